@@ -1,0 +1,1 @@
+"""Physics in numpy: what each constituent of the air does to light."""
