@@ -1,0 +1,1 @@
+"""Tests of the path tracer that the fast solver is judged by."""
