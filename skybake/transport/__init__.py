@@ -1,0 +1,1 @@
+"""Light along a ray: geometry, columns and marching, in numba kernels."""

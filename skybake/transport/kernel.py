@@ -1,0 +1,122 @@
+"""The one place that decides how kernels are compiled, cached and threaded."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import warnings
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numba
+
+# Without nnan and ninf: kernels may rely on the meaning of inf and nan.
+FAST_MATH = {"nsz", "arcp", "contract", "afn", "reassoc"}
+
+_KERNEL_PACKAGES = ("transport", "luts", "sky", "projection", "reference")
+
+
+def kernel(function: Callable[..., Any]) -> Any:
+    """Compile `function` on first call, without the GIL, kept on disk.
+
+    Kernels are serial and take a range of rows; `run_rows` gives each thread
+    its ranges. Measured against ``parallel=True`` this halves the compile time
+    and saves milliseconds a call, and the result has the same bits for any
+    number of threads.
+    """
+    options = {"nogil": True, "fastmath": FAST_MATH, "error_model": "numpy"}
+    directory = cache_directory()
+    if directory is None:
+        return numba.njit(**options)(function)
+    # numba resolves its cache folder while it decorates and nowhere later, so
+    # other users of numba in this process keep the folder that they chose.
+    previous = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(directory)
+    try:
+        return numba.njit(cache=True, **options)(function)
+    finally:
+        numba.config.CACHE_DIR = previous
+
+
+@cache
+def cache_directory() -> Path | None:
+    """Folder of the compiled kernels, or None where none can be written.
+
+    It is named by a hash of the kernels' sources, because numba does not notice
+    an edit to a kernel that another file's kernel calls (numba issue 9483).
+    SKYBAKE_CACHE_DIR and NUMBA_CACHE_DIR take precedence over the user's cache
+    folder.
+    """
+    configured = os.environ.get("SKYBAKE_CACHE_DIR") or os.environ.get("NUMBA_CACHE_DIR")
+    directory = Path(configured) if configured else _user_cache() / "skybake"
+    directory = directory / f"kernels-{_source_hash()}"
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except (OSError, RuntimeError):
+        writable = False
+    else:
+        writable = os.access(directory, os.W_OK)
+    if not writable:
+        warnings.warn(
+            f"{directory}: kernel cache must be writable; compiling anew in every process",
+            RuntimeWarning,
+            stacklevel=2,
+        )
+        return None
+    return directory
+
+
+def is_warm() -> bool:
+    """Whether compiled kernels of this version lie on disk."""
+    directory = cache_directory()
+    return directory is not None and any(directory.rglob("*.nbc"))
+
+
+def thread_count() -> int:
+    """CPUs that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def run_rows(rows: int, work: Callable[[int, int], object], *, chunk: int = 1) -> None:
+    """Call ``work(first, last)`` over chunks of ``range(rows)`` on all threads.
+
+    Chunks are handed out as threads become free, since rows differ in cost.
+    Each call must write to its own rows only.
+    """
+    starts = range(0, rows, chunk)
+    if thread_count() == 1 or len(starts) == 1:
+        for first in starts:
+            work(first, min(first + chunk, rows))
+        return
+    futures = [_pool().submit(work, first, min(first + chunk, rows)) for first in starts]
+    try:
+        for future in futures:
+            future.result()
+    except BaseException:
+        for future in futures:
+            future.cancel()
+        raise
+
+
+@cache
+def _pool() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(thread_count(), thread_name_prefix="skybake")
+
+
+@cache
+def _source_hash() -> str:
+    package = Path(__file__).parent.parent
+    digest = hashlib.sha256(numba.__version__.encode())
+    for name in _KERNEL_PACKAGES:
+        for source in sorted((package / name).glob("*.py")):
+            digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _user_cache() -> Path:
+    if xdg := os.environ.get("XDG_CACHE_HOME"):
+        return Path(xdg)
+    return Path.home() / ".cache"
