@@ -7,6 +7,12 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from skybake.optics.phase import SCATTERING_ANGLES, build_phase, phase_rayleigh, scattering_angles
+from skybake.optics.profile import eval_profile
+from skybake.optics.rayleigh import gas_scattering
+from skybake.optics.spectrum import BANDWIDTH, eval_band_mean, eval_spectrum
+from skybake.preset import Absorber, Aerosol, Constituent, Gas, Planet
+
 Array = npt.NDArray[np.float64]
 
 ALTITUDE_NODES = 1024
@@ -42,5 +48,88 @@ class Medium(NamedTuple):
 
 
 def altitude_nodes(r_bottom: float, r_top: float) -> Array:
-    """Altitudes of the density nodes, quadratic so that they crowd at the ground. [km]"""
+    """Altitudes [km] of the density nodes, quadratic so that they crowd at the ground."""
     return np.linspace(0.0, 1.0, ALTITUDE_NODES) ** 2 * (r_top - r_bottom)
+
+
+def build_medium(planet: Planet, wavelengths: Array, bandwidth: float = BANDWIDTH) -> Medium:
+    """Sample a planet's atmosphere.
+
+    Parameters
+    ----------
+    planet : Planet
+        What the preset gives.
+    wavelengths : ndarray, shape (wavelength,)
+        In any order. [nm]
+    bandwidth : float, optional
+        Full width of the band over which the cross-sections of absorbing gases
+        are averaged, for they have structure finer than the sampling. All else is
+        taken at the wavelengths themselves. [nm]
+
+    Returns
+    -------
+    Medium
+        Constituents in the preset's order.
+
+    Raises
+    ------
+    PresetError
+        If a wavelength lies outside the preset's spectra, or a phase function is
+        not normalised.
+    """
+    r_top = planet.radius + planet.atmosphere_top
+    altitude = altitude_nodes(planet.radius, r_top)
+    density = np.stack([eval_profile(c.profile, altitude) for c in planet.constituents], axis=1)
+    # Kernels take the density as linear between nodes, so the trapezoid is its exact column.
+    columns = np.trapezoid(density, altitude, axis=0)
+    scattering, absorption, phase = zip(
+        *(
+            _optics(constituent, column, wavelengths, bandwidth)
+            for constituent, column in zip(planet.constituents, columns, strict=True)
+        ),
+        strict=True,
+    )
+    return Medium(
+        r_bottom=planet.radius,
+        r_top=r_top,
+        density=density,
+        scattering=np.stack(scattering),
+        extinction=np.stack(scattering) + np.stack(absorption),
+        phase=np.stack(phase),
+        ground_albedo=eval_spectrum(planet.ground.albedo, wavelengths),
+    )
+
+
+def _optics(
+    constituent: Constituent, column: float, wavelengths: Array, bandwidth: float
+) -> tuple[Array, Array, Array]:
+    """Scattering and absorption [km⁻¹] and phase function [sr⁻¹]; `column` in km."""
+    if isinstance(constituent, Gas):
+        scattering, depolarisation = gas_scattering(constituent, wavelengths)
+        phase = phase_rayleigh(np.cos(scattering_angles())[:, None], depolarisation)
+        return scattering, np.zeros(len(wavelengths)), phase
+    if isinstance(constituent, Absorber):
+        cross_section = eval_band_mean(constituent.cross_section, wavelengths, bandwidth)
+        isotropic = np.full((SCATTERING_ANGLES, len(wavelengths)), 1.0 / (4.0 * np.pi))
+        return np.zeros(len(wavelengths)), cross_section * constituent.column / column, isotropic
+    phase = build_phase(constituent.phase, wavelengths)
+    if isinstance(constituent, Aerosol):
+        extinction = aerosol_optical_depth(constituent, wavelengths) / column
+        albedo = eval_spectrum(constituent.single_scattering_albedo, wavelengths)
+        return albedo * extinction, (1.0 - albedo) * extinction, phase
+    return (
+        eval_spectrum(constituent.scattering, wavelengths),
+        eval_spectrum(constituent.absorption, wavelengths),
+        phase,
+    )
+
+
+def aerosol_optical_depth(aerosol: Aerosol, wavelengths: Array) -> Array:
+    """Vertical optical depth from the ground to the top, shape (wavelength,)."""
+    reference = np.array([aerosol.optical_depth_wavelength])
+    if isinstance(aerosol.extinction_spectrum, float):
+        relative = (wavelengths / reference) ** -aerosol.extinction_spectrum
+    else:
+        relative = eval_spectrum(aerosol.extinction_spectrum, wavelengths)
+        relative = relative / eval_spectrum(aerosol.extinction_spectrum, reference)
+    return aerosol.optical_depth * relative

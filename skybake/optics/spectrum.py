@@ -1,0 +1,165 @@
+"""Spectra of a preset at the wavelengths of a rendering, and the light of its star."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from skybake.errors import PresetError
+from skybake.preset import Spectrum, Star
+
+Array = npt.NDArray[np.float64]
+
+BANDWIDTH = 10.0
+"""Width of the band that stands for one wavelength of a finely structured spectrum. [nm]"""
+
+
+def eval_spectrum(spectrum: Spectrum, wavelengths: Array) -> Array:
+    """Evaluate a spectrum, linear between its nodes and exact at them.
+
+    Parameters
+    ----------
+    spectrum : Spectrum
+        What the preset gives.
+    wavelengths : ndarray, shape (wavelength,)
+        In any order. [nm]
+
+    Returns
+    -------
+    ndarray of float64, shape (wavelength,)
+
+    Raises
+    ------
+    PresetError
+        If a wavelength lies outside the nodes.
+    """
+    if not spectrum.wavelength:
+        return np.full(len(wavelengths), spectrum.values[0])
+    check_range(spectrum.where, spectrum.wavelength, wavelengths)
+    return np.interp(wavelengths, spectrum.wavelength, spectrum.values)
+
+
+def eval_band_mean(spectrum: Spectrum, wavelengths: Array, bandwidth: float) -> Array:
+    """Average a spectrum over bands, as suits one with lines finer than the sampling.
+
+    Parameters
+    ----------
+    spectrum : Spectrum
+        What the preset gives.
+    wavelengths : ndarray, shape (wavelength,)
+        Centres of the bands. [nm]
+    bandwidth : float
+        Full width of the bands, cut at the ends of the spectrum; 0 evaluates at
+        the centres. [nm]
+
+    Returns
+    -------
+    ndarray of float64, shape (wavelength,)
+
+    Raises
+    ------
+    PresetError
+        If a centre lies outside the nodes.
+    """
+    if not spectrum.wavelength or bandwidth <= 0.0:
+        return eval_spectrum(spectrum, wavelengths)
+    check_range(spectrum.where, spectrum.wavelength, wavelengths)
+    nodes = np.array(spectrum.wavelength)
+    values = np.array(spectrum.values)
+    below = np.concatenate([[0.0], np.cumsum(np.diff(nodes) * (values[1:] + values[:-1]) / 2.0)])
+    half_width = np.array([[-0.5], [0.5]]) * bandwidth
+    edges = np.clip(wavelengths + half_width, nodes[0], nodes[-1])
+    left = np.clip(np.searchsorted(nodes, edges, side="right") - 1, 0, len(nodes) - 2)
+    at_edges = np.interp(edges, nodes, values)
+    integral = below[left] + (edges - nodes[left]) * (values[left] + at_edges) / 2.0
+    mean: Array = (integral[1] - integral[0]) / (edges[1] - edges[0])
+    return mean
+
+
+def star_irradiance(star: Star, wavelengths: Array, bandwidth: float = BANDWIDTH) -> Array:
+    """Irradiance on a plane above the atmosphere that faces the star, averaged over bands.
+
+    Parameters
+    ----------
+    star : Star
+        The preset's star.
+    wavelengths : ndarray, shape (wavelength,)
+        Centres of the bands. [nm]
+    bandwidth : float, optional
+        Full width of the bands. [nm]
+
+    Returns
+    -------
+    ndarray of float64, shape (wavelength,)
+        [W m⁻² nm⁻¹]
+
+    Raises
+    ------
+    PresetError
+        If a wavelength lies outside the star's spectrum.
+    """
+    return star.dilution * eval_band_mean(star.irradiance, wavelengths, bandwidth)
+
+
+def star_spectrum(star: Star) -> tuple[Array, Array]:
+    """Irradiance at the planet as finely as it is known, for integrals over colour.
+
+    Parameters
+    ----------
+    star : Star
+        The preset's star.
+
+    Returns
+    -------
+    wavelengths : ndarray of float64, shape (n,)
+        Nodes, ascending from 360 to 830. [nm]
+    irradiance : ndarray of float64, shape (n,)
+        To be interpolated linearly. [W m⁻² nm⁻¹]
+
+    Raises
+    ------
+    PresetError
+        If the star's spectrum does not cover 360 to 830 nm.
+    """
+    nodes = np.array(star.irradiance.wavelength)
+    inner = nodes[(nodes > 360.0) & (nodes < 830.0)]
+    wavelengths = np.concatenate([[360.0], inner, [830.0]])
+    return wavelengths, star.dilution * eval_spectrum(star.irradiance, wavelengths)
+
+
+def limb_darkening(star: Star, wavelengths: Array) -> Array:
+    """Coefficients u and v of I(mu)/I(1) = 1 - u (1 - mu) - v (1 - mu²).
+
+    Parameters
+    ----------
+    star : Star
+        The preset's star.
+    wavelengths : ndarray, shape (wavelength,)
+        [nm]
+
+    Returns
+    -------
+    ndarray of float64, shape (2, wavelength)
+        The disc's mean is 1 - u/3 - v/2 of its centre.
+
+    Raises
+    ------
+    PresetError
+        If a wavelength lies outside the coefficients' nodes.
+    """
+    return np.stack(
+        [
+            eval_spectrum(star.limb_darkening_u, wavelengths),
+            eval_spectrum(star.limb_darkening_v, wavelengths),
+        ]
+    )
+
+
+def check_range(where: str, nodes: tuple[float, ...], wavelengths: Array) -> None:
+    """Raise PresetError unless the wavelengths lie within the nodes, both in nm."""
+    outside = wavelengths[(wavelengths < nodes[0]) | ~(wavelengths <= nodes[-1])]
+    if outside.size:
+        raise PresetError(
+            f"{where}: wavelength must be within {nodes[0]:g} to {nodes[-1]:g} nm, "
+            f"got {outside[0]:g} nm"
+        )

@@ -1,0 +1,50 @@
+"""Planets from TOML: where presets live, what they may say, and every check on it."""
+
+from skybake.preset.find import preset_names, preset_text
+from skybake.preset.load import load_preset
+from skybake.preset.model import (
+    Absorber,
+    Aerosol,
+    Coefficients,
+    Constituent,
+    CornetteShanksPhase,
+    DoubleHenyeyGreensteinPhase,
+    ExponentialProfile,
+    Gas,
+    Ground,
+    HenyeyGreensteinPhase,
+    Phase,
+    Planet,
+    Profile,
+    RayleighPhase,
+    Spectrum,
+    Star,
+    TabulatedPhase,
+    TabulatedProfile,
+    TentProfile,
+)
+
+__all__ = [
+    "Absorber",
+    "Aerosol",
+    "Coefficients",
+    "Constituent",
+    "CornetteShanksPhase",
+    "DoubleHenyeyGreensteinPhase",
+    "ExponentialProfile",
+    "Gas",
+    "Ground",
+    "HenyeyGreensteinPhase",
+    "Phase",
+    "Planet",
+    "Profile",
+    "RayleighPhase",
+    "Spectrum",
+    "Star",
+    "TabulatedPhase",
+    "TabulatedProfile",
+    "TentProfile",
+    "load_preset",
+    "preset_names",
+    "preset_text",
+]

@@ -1,0 +1,264 @@
+"""What a preset says, as frozen dataclasses in the units of the code."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from skybake.constants import ASTRONOMICAL_UNIT
+
+
+@dataclass(frozen=True, slots=True)
+class Spectrum:
+    """A quantity against wavelength, linear between its nodes.
+
+    Attributes
+    ----------
+    where : str
+        Where the preset gives it, for messages.
+    wavelength : tuple of float
+        Nodes, strictly ascending [nm]; empty if one value holds everywhere.
+    values : tuple of float
+        Values at the nodes, or the one value.
+    """
+
+    where: str
+    wavelength: tuple[float, ...]
+    values: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ExponentialProfile:
+    """Density exp(-h / scale_height), 1 at the ground; scale height in km."""
+
+    scale_height: float
+
+
+@dataclass(frozen=True, slots=True)
+class TentProfile:
+    """Density that falls linearly from 1 at `center` to 0 at `half_width` from it [km]."""
+
+    center: float
+    half_width: float
+
+
+@dataclass(frozen=True, slots=True)
+class TabulatedProfile:
+    """Density at altitudes [km]; log-linear where both neighbours are positive, else linear."""
+
+    where: str
+    altitude: tuple[float, ...]
+    density: tuple[float, ...]
+
+
+Profile = ExponentialProfile | TentProfile | TabulatedProfile
+
+
+@dataclass(frozen=True, slots=True)
+class RayleighPhase:
+    """Scattering by anisotropic molecules with this depolarisation ratio of natural light."""
+
+    depolarisation: Spectrum
+
+
+@dataclass(frozen=True, slots=True)
+class HenyeyGreensteinPhase:
+    """Henyey & Greenstein (1941) with this mean cosine."""
+
+    asymmetry: Spectrum
+
+
+@dataclass(frozen=True, slots=True)
+class CornetteShanksPhase:
+    """Cornette & Shanks (1992); its parameter is slightly less than the mean cosine."""
+
+    asymmetry: Spectrum
+
+
+@dataclass(frozen=True, slots=True)
+class DoubleHenyeyGreensteinPhase:
+    """Two Henyey-Greenstein lobes, the first with weight `first_fraction`."""
+
+    first_asymmetry: Spectrum
+    second_asymmetry: Spectrum
+    first_fraction: Spectrum
+
+
+@dataclass(frozen=True, slots=True)
+class TabulatedPhase:
+    """A table over scattering angle, interpolated in the logarithm, and over wavelength.
+
+    Attributes
+    ----------
+    where : str
+        Where the preset names it, for messages.
+    angle : tuple of float
+        Scattering angles, ascending from 0 to pi. [rad]
+    wavelength : tuple of float
+        Strictly ascending [nm]; empty if the one column holds everywhere.
+    values : tuple of tuple of float
+        One tuple a wavelength, one value an angle, all positive. [sr⁻¹]
+    """
+
+    where: str
+    angle: tuple[float, ...]
+    wavelength: tuple[float, ...]
+    values: tuple[tuple[float, ...], ...]
+
+
+Phase = (
+    RayleighPhase
+    | HenyeyGreensteinPhase
+    | CornetteShanksPhase
+    | DoubleHenyeyGreensteinPhase
+    | TabulatedPhase
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Gas:
+    """Molecules that scatter by their refractive index.
+
+    Attributes
+    ----------
+    pressure, temperature : float
+        Where the profile's density is 1 for the ground. [Pa], [K]
+    composition : tuple of (str, float)
+        Mole fractions by the names of `skybake.preset.load.GASES`.
+    """
+
+    name: str
+    profile: Profile
+    pressure: float
+    temperature: float
+    composition: tuple[tuple[str, float], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Absorber:
+    """Molecules that only absorb, by their column over the ground.
+
+    Attributes
+    ----------
+    column : float
+        Molecules over the ground. [m⁻²]
+    cross_section : Spectrum
+        Absorption per molecule. [m²]
+    """
+
+    name: str
+    profile: Profile
+    column: float
+    cross_section: Spectrum
+
+
+@dataclass(frozen=True, slots=True)
+class Aerosol:
+    """Particles, by their vertical optical depth.
+
+    Attributes
+    ----------
+    optical_depth, optical_depth_wavelength : float
+        Extinction from the ground to the top at this wavelength [nm].
+    extinction_spectrum : Spectrum or float
+        Extinction against wavelength in any scale, or an Angstrom exponent.
+    single_scattering_albedo : Spectrum
+        Scattering over extinction, in [0, 1].
+    """
+
+    name: str
+    profile: Profile
+    optical_depth: float
+    optical_depth_wavelength: float
+    extinction_spectrum: Spectrum | float
+    single_scattering_albedo: Spectrum
+    phase: Phase
+
+
+@dataclass(frozen=True, slots=True)
+class Coefficients:
+    """Anything, by its coefficients where the profile's density is 1, in km⁻¹."""
+
+    name: str
+    profile: Profile
+    scattering: Spectrum
+    absorption: Spectrum
+    phase: Phase
+
+
+Constituent = Gas | Absorber | Aerosol | Coefficients
+
+
+@dataclass(frozen=True, slots=True)
+class Ground:
+    """A Lambertian sphere; albedo in [0, 1]."""
+
+    albedo: Spectrum
+
+
+@dataclass(frozen=True, slots=True)
+class Star:
+    """The sun of a planet.
+
+    Attributes
+    ----------
+    radius, distance : float
+        Of its photosphere; from the planet. [km]
+    irradiance : Spectrum
+        On a plane that faces it from 1 au. [W m⁻² nm⁻¹]
+    limb_darkening_u, limb_darkening_v : Spectrum
+        Coefficients of I(mu)/I(1) = 1 - u (1 - mu) - v (1 - mu²).
+    """
+
+    radius: float
+    distance: float
+    irradiance: Spectrum
+    limb_darkening_u: Spectrum
+    limb_darkening_v: Spectrum
+
+    @property
+    def angular_radius(self) -> float:
+        """Half the angle under which the planet sees the disc, in radians."""
+        return math.asin(self.radius / self.distance)
+
+    @property
+    def dilution(self) -> float:
+        """Irradiance at the planet relative to that at 1 au."""
+        return (ASTRONOMICAL_UNIT / self.distance) ** 2
+
+
+@dataclass(frozen=True, slots=True)
+class Planet:
+    """A world: all that a sky depends on but the observer and the time.
+
+    Attributes
+    ----------
+    name : str
+        The preset's name, or its file's without the ending.
+    title : str
+        One line for people.
+    radius, atmosphere_top : float
+        Of the ground; altitude above which there is vacuum. [km]
+    rendering : {"spectral", "rgb"}
+        Whether radiances are integrated over a spectrum, or three wavelengths
+        stand for red, green and blue.
+    wavelengths : tuple of float or None
+        The wavelengths to render [nm]; None leaves the choice to the renderer.
+    constituents : tuple of Constituent
+        In the preset's order.
+    recipe : dict
+        The preset as read, fit for JSON: enough to make the planet again, given
+        the user's own tables, whose SHA-256 is under ``"files"``.
+    """
+
+    name: str
+    title: str
+    radius: float
+    atmosphere_top: float
+    rendering: Literal["spectral", "rgb"]
+    wavelengths: tuple[float, ...] | None
+    star: Star
+    ground: Ground
+    constituents: tuple[Constituent, ...]
+    recipe: dict[str, Any]

@@ -1,0 +1,72 @@
+"""Quantities as people type them, with or without a unit: "5deg", "2km", "30000ft"."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from skybake.errors import InputError
+
+_RADIANS = {
+    "deg": math.pi / 180.0,
+    "rad": 1.0,
+    "arcmin": math.pi / 10_800.0,
+    "arcsec": math.pi / 648_000.0,
+}
+_KILOMETRES = {"m": 1e-3, "km": 1.0, "ft": 0.3048e-3, "mi": 1.609344}
+
+_QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-zA-Z]*)", re.ASCII)
+
+
+def parse_angle(text: str) -> float:
+    """Read an angle such as ``5deg``, ``0.1rad``, ``30arcmin`` or ``5``.
+
+    Parameters
+    ----------
+    text : str
+        A number and a unit: deg, rad, arcmin or arcsec; a bare number is in degrees.
+
+    Returns
+    -------
+    float
+        The angle. [rad]
+
+    Raises
+    ------
+    InputError
+        If the text is no finite number with one of these units.
+    """
+    return _parse(text, _RADIANS, bare="deg", quantity="an angle", example="5deg")
+
+
+def parse_length(text: str) -> float:
+    """Read a length such as ``2km``, ``1500m``, ``30000ft`` or ``12``.
+
+    Parameters
+    ----------
+    text : str
+        A number and a unit: m, km, ft or mi; a bare number is in metres.
+
+    Returns
+    -------
+    float
+        The length. [km]
+
+    Raises
+    ------
+    InputError
+        If the text is no finite number with one of these units.
+    """
+    return _parse(text, _KILOMETRES, bare="m", quantity="a length", example="2km")
+
+
+def _parse(text: str, units: dict[str, float], *, bare: str, quantity: str, example: str) -> float:
+    match = _QUANTITY.fullmatch(text.strip())
+    unit = match[2] or bare if match else ""
+    value = float(match[1]) * units[unit] if match and unit in units else math.nan
+    if not math.isfinite(value):
+        raise InputError(
+            f"must be {quantity} such as {example} (units: {', '.join(units)}; "
+            f"a bare number is in {bare}), got {text!r}"
+        )
+    return value
