@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from skybake.errors import PresetError
 from skybake.optics.phase import SCATTERING_ANGLES, build_phase, phase_rayleigh, scattering_angles
 from skybake.optics.profile import eval_profile
 from skybake.optics.rayleigh import gas_scattering
@@ -81,11 +82,17 @@ def build_medium(planet: Planet, wavelengths: Array, bandwidth: float = BANDWIDT
     altitude = altitude_nodes(planet.radius, r_top)
     density = np.stack([eval_profile(c.profile, altitude) for c in planet.constituents], axis=1)
     # Kernels take the density as linear between nodes, so the trapezoid is its exact column.
-    columns = np.trapezoid(density, altitude, axis=0)
+    columns = np.asarray(np.trapezoid(density, altitude, axis=0))
+    for constituent, column in zip(planet.constituents, columns, strict=True):
+        if not column > 0.0:
+            raise PresetError(
+                f"{planet.name}: constituents.{constituent.name}.profile: must be thicker than "
+                f"{float(np.diff(altitude).max()):.2g} km, the widest step between altitudes"
+            )
     scattering, absorption, phase = zip(
         *(
             _optics(constituent, column, wavelengths, bandwidth)
-            for constituent, column in zip(planet.constituents, columns, strict=True)
+            for constituent, column in zip(planet.constituents, columns.tolist(), strict=True)
         ),
         strict=True,
     )
@@ -132,4 +139,5 @@ def aerosol_optical_depth(aerosol: Aerosol, wavelengths: Array) -> Array:
     else:
         relative = eval_spectrum(aerosol.extinction_spectrum, wavelengths)
         relative = relative / eval_spectrum(aerosol.extinction_spectrum, reference)
-    return aerosol.optical_depth * relative
+    optical_depth: Array = aerosol.optical_depth * relative
+    return optical_depth

@@ -23,8 +23,7 @@ def eval_profile(profile: Profile, altitude: Array) -> Array:
     Returns
     -------
     ndarray of float64, shape of `altitude`
-        1 at the ground for an exponential, at the centre for a tent, and relative
-        to the table's first density that is not 0 for a table.
+        1 at the ground for an exponential and at the centre for a tent.
     """
     if isinstance(profile, ExponentialProfile):
         return np.exp(-altitude / profile.scale_height)
@@ -32,7 +31,6 @@ def eval_profile(profile: Profile, altitude: Array) -> Array:
         return np.maximum(0.0, 1.0 - np.abs(altitude - profile.center) / profile.half_width)
     nodes = np.array(profile.altitude)
     density = np.array(profile.density)
-    density /= density[np.flatnonzero(density)[0]]
     linear = np.interp(altitude, nodes, density, left=0.0, right=0.0)
     with np.errstate(divide="ignore"):
         logarithm = np.log(density)

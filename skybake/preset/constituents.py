@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from itertools import pairwise
 
 from skybake.constants import DOBSON_UNIT
@@ -25,12 +26,10 @@ from skybake.preset.model import (
     TentProfile,
 )
 from skybake.preset.section import Section
-from skybake.preset.tables import load_table
 
 GASES = ("dry_air", "co2", "n2", "ar")
 """Gases whose refractive index skybake knows."""
 
-KINDS = ("gas", "absorber", "aerosol", "coefficients")
 PROFILES = ("exponential", "tent", "tabulated")
 PHASES = (
     "rayleigh",
@@ -61,14 +60,8 @@ def read_constituent(name: str, section: Section, top: float) -> Constituent:
     PresetError
         With the key and the rule that it breaks.
     """
-    kind = section.choice("kind", KINDS)
-    reader = {
-        "gas": _read_gas,
-        "absorber": _read_absorber,
-        "aerosol": _read_aerosol,
-        "coefficients": _read_coefficients,
-    }[kind]
-    constituent = reader(name, section, top)
+    kind = section.choice("kind", tuple(_READERS))
+    constituent = _READERS[kind](name, section, top)
     section.finish()
     return constituent
 
@@ -81,10 +74,16 @@ def _read_gas(name: str, section: Section, top: float) -> Gas:
     fractions.finish()
     total = sum(fraction for _, fraction in composition)
     if not math.isclose(total, 1.0, abs_tol=0.01):
-        section.fail("composition", f"must add up to 1 within 0.01, got {total:g}")
+        section.fail("composition", f"mole fractions must add up to 1 within 0.01, got {total:g}")
+    profile = _read_profile(section, name, top)
+    if isinstance(profile, TabulatedProfile):
+        # Pressure and temperature are those of the ground.
+        if profile.density[0] == 0.0:
+            section.fail("profile", "must have gas at the ground")
+        profile = _relative(profile, profile.density[0])
     return Gas(
         name=name,
-        profile=_read_profile(section, "air", top),
+        profile=profile,
         pressure=section.number("pressure_pa", 0.0, 1e9),
         temperature=section.number("temperature_k", 1.0, 1e5),
         composition=composition,
@@ -94,7 +93,7 @@ def _read_gas(name: str, section: Section, top: float) -> Gas:
 def _read_absorber(name: str, section: Section, top: float) -> Absorber:
     return Absorber(
         name=name,
-        profile=_read_profile(section, name, top),
+        profile=_read_shape(section, name, top),
         column=section.number("column_du", 0.0, 1e6) * DOBSON_UNIT,
         cross_section=section.spectrum("cross_section_m2", 0.0, 1e-15),
     )
@@ -106,7 +105,7 @@ def _read_aerosol(name: str, section: Section, top: float) -> Aerosol:
         section.fail("", "must give either relative_extinction or angstrom_exponent")
     return Aerosol(
         name=name,
-        profile=_read_profile(section, name, top),
+        profile=_read_shape(section, name, top),
         optical_depth=section.number("optical_depth", 0.0, 1e3),
         optical_depth_wavelength=section.number("optical_depth_wavelength_nm", 100.0, 1e5),
         extinction_spectrum=(
@@ -122,25 +121,25 @@ def _read_aerosol(name: str, section: Section, top: float) -> Aerosol:
 def _read_coefficients(name: str, section: Section, top: float) -> Coefficients:
     scattering = section.spectrum("scattering_per_km", 0.0, 1e4, default=0.0)
     absorption = section.spectrum("absorption_per_km", 0.0, 1e4, default=0.0)
-    if any(scattering.values):
+    phase: Phase
+    if any(scattering.values) or section.has("phase"):
         phase = _read_phase(section.section("phase"))
     else:
-        phase = HenyeyGreensteinPhase(section.spectrum("phase", 0.0, 0.0, default=0.0))
+        phase = HenyeyGreensteinPhase(Spectrum(section.where("phase"), (), (0.0,)))
     return Coefficients(name, _read_profile(section, name, top), scattering, absorption, phase)
 
 
+_READERS: dict[str, Callable[[str, Section, float], Constituent]] = {
+    "gas": _read_gas,
+    "absorber": _read_absorber,
+    "aerosol": _read_aerosol,
+    "coefficients": _read_coefficients,
+}
+
+
 def _read_profile(section: Section, column: str, top: float) -> Profile:
-    where = section.where("profile")
-    name = section.raw("profile")
-    if isinstance(name, str):
-        table = load_table(name, where, section.folder)
-        if not {"altitude_km", column} <= set(table.columns):
-            section.fail(
-                "profile",
-                f"table {name!r} must have columns altitude_km and {column}, "
-                f"got {', '.join(table.columns)}",
-            )
-        altitude, density = table.columns["altitude_km"], table.columns[column]
+    if isinstance(section.raw("profile"), str):
+        altitude, density = section.columns("profile", "altitude_km", column)
     else:
         inner = section.section("profile")
         kind = inner.choice("kind", PROFILES)
@@ -170,7 +169,19 @@ def _read_profile(section: Section, column: str, top: float) -> Profile:
             f"must cover 0 to {top:g} km or end in density 0, "
             f"got {altitude[0]:g} to {altitude[-1]:g} km",
         )
-    return TabulatedProfile(where, altitude, density)
+    return TabulatedProfile(altitude, density)
+
+
+def _read_shape(section: Section, column: str, top: float) -> Profile:
+    """Profile of which only the shape counts, with a maximum of about 1."""
+    profile = _read_profile(section, column, top)
+    if isinstance(profile, TabulatedProfile):
+        return _relative(profile, max(profile.density))
+    return profile
+
+
+def _relative(profile: TabulatedProfile, unit: float) -> TabulatedProfile:
+    return TabulatedProfile(profile.altitude, tuple(n / unit for n in profile.density))
 
 
 def _read_phase(section: Section) -> Phase:
@@ -200,9 +211,7 @@ def _read_asymmetry(section: Section, key: str) -> Spectrum:
 
 
 def _read_tabulated_phase(section: Section) -> TabulatedPhase:
-    name = section.text("table")
-    where = section.where("table")
-    columns = load_table(name, where, section.folder).columns
+    columns = section.table("table")
     angle = columns.get("angle_deg", ())
     if not angle or angle[0] != 0.0 or angle[-1] != 180.0:
         section.fail("table", "column angle_deg must run from 0 to 180")
@@ -218,7 +227,7 @@ def _read_tabulated_phase(section: Section) -> TabulatedPhase:
     if any(min(values) <= 0.0 for _, values in bands):
         section.fail("table", "values must be greater than 0")
     return TabulatedPhase(
-        where,
+        section.where("table"),
         tuple(math.radians(a) for a in angle),
         tuple(wavelength for wavelength, _ in bands) if len(bands) > 1 else (),
         tuple(values for _, values in bands),

@@ -60,11 +60,13 @@ def display_name(path: Path) -> str:
 def read_text(path: Path) -> str:
     """Read a text file; a fault is a PresetError of one line."""
     try:
-        return path.read_text(encoding="utf-8")
+        return path.read_text(encoding="utf-8-sig")  # spreadsheets write a byte order mark
     except OSError as error:
         raise PresetError(f"{display_name(path)}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
         raise PresetError(f"{display_name(path)}: must be UTF-8 text") from error
+    except ValueError as error:
+        raise PresetError(f"{display_name(path)!r}: cannot be read: {error}") from error
 
 
 def _folder() -> Path:

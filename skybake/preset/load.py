@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from hashlib import sha256
 from pathlib import Path
@@ -12,11 +13,14 @@ from skybake.errors import PresetError
 from skybake.preset.constituents import read_constituent
 from skybake.preset.find import display_name, find_preset, read_text
 from skybake.preset.model import Ground, Planet, Star
-from skybake.preset.section import Section
+from skybake.preset.section import Section, shown
 from skybake.preset.tables import is_user_file
 
 MAX_CONSTITUENTS = 16
 """More than any known sky needs, few enough for kernels to hold in registers and cache."""
+
+
+_NAME = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def load_preset(name_or_path: str | Path) -> Planet:
@@ -40,9 +44,11 @@ def load_preset(name_or_path: str | Path) -> Planet:
     """
     path = find_preset(name_or_path)
     file = display_name(path)
+    text = read_text(path)
     try:
-        document = tomllib.loads(read_text(path))
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        document = tomllib.loads(text)
+    # A ValueError that is no TOMLDecodeError comes from an integer of thousands of digits.
+    except (ValueError, RecursionError) as error:
         raise PresetError(f"{file}: not valid TOML: {error}") from error
     return planet_from_document(document, file=file, name=path.stem, folder=path.parent)
 
@@ -85,6 +91,9 @@ def planet_from_document(document: dict[str, Any], *, file: str, name: str, fold
     names = constituents.keys()
     if not 1 <= len(names) <= MAX_CONSTITUENTS:
         constituents.fail("", f"must be 1 to {MAX_CONSTITUENTS}, got {len(names)}")
+    for key in names:
+        if not _NAME.fullmatch(key):
+            constituents.fail("", f"names must be of letters, digits, _ and -, got {shown(key)}")
     top.finish()
     return Planet(
         name=name,
@@ -118,11 +127,11 @@ def _read_star(section: Section) -> Star:
 
 def _recipe(document: dict[str, Any], folder: Path) -> dict[str, Any]:
     """Copy of the document with the digests of the user's own tables under ``"files"``."""
-    digests = {
-        name: sha256((folder / name).read_bytes()).hexdigest()
-        for name in sorted(set(_user_files(document)))
-    }
-    return {**document, "files": digests} if digests else dict(document)
+    names = sorted(set(_user_files(document)))
+    if not names:
+        return dict(document)
+    digests = {name: sha256((folder / name).read_bytes()).hexdigest() for name in names}
+    return {**document, "files": digests}
 
 
 def _user_files(value: Any, key: str = "") -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from skybake.constants import ASTRONOMICAL_UNIT
@@ -47,7 +47,6 @@ class TentProfile:
 class TabulatedProfile:
     """Density at altitudes [km]; log-linear where both neighbours are positive, else linear."""
 
-    where: str
     altitude: tuple[float, ...]
     density: tuple[float, ...]
 
@@ -123,9 +122,9 @@ class Gas:
     Attributes
     ----------
     pressure, temperature : float
-        Where the profile's density is 1 for the ground. [Pa], [K]
+        Where the profile's density is 1. [Pa], [K]
     composition : tuple of (str, float)
-        Mole fractions by the names of `skybake.preset.load.GASES`.
+        Mole fractions by the names of `skybake.preset.constituents.GASES`.
     """
 
     name: str
@@ -261,4 +260,4 @@ class Planet:
     star: Star
     ground: Ground
     constituents: tuple[Constituent, ...]
-    recipe: dict[str, Any]
+    recipe: dict[str, Any] = field(compare=False)

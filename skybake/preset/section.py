@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
-import math
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -13,6 +11,18 @@ from skybake.preset.tables import load_table
 
 MISSING: Any = object()
 """Default of a key that must be given."""
+
+MAX_SHOWN = 60
+"""Characters of a value that a message repeats."""
+
+
+def shown(value: Any) -> str:
+    """Value for a message: one line, cut where it gets long."""
+    try:
+        text = repr(value)
+    except ValueError:  # Python refuses to print an integer of more than 4300 digits.
+        return "an integer of thousands of digits"
+    return text if len(text) <= MAX_SHOWN else f"{text[:MAX_SHOWN]}..."
 
 
 class Section:
@@ -67,7 +77,7 @@ class Section:
         """Table under a key."""
         value = self.raw(key)
         if not isinstance(value, dict):
-            self.fail(key, f"must be a table, got {value!r}")
+            self.fail(key, f"must be a table, got {shown(value)}")
         path = self.where(key).removeprefix(f"{self._file}: ")
         return Section(self._file, path, value, self.folder)
 
@@ -75,14 +85,14 @@ class Section:
         """Non-empty string."""
         value = self.raw(key, default)
         if not isinstance(value, str) or not value.strip():
-            self.fail(key, f"must be a text, got {value!r}")
+            self.fail(key, f"must be a text, got {shown(value)}")
         return value
 
     def choice(self, key: str, choices: tuple[str, ...], default: Any = MISSING) -> str:
         """One of a few strings."""
         value = self.raw(key, default)
         if value not in choices:
-            self.fail(key, f"must be one of {', '.join(choices)}, got {value!r}")
+            self.fail(key, f"must be one of {', '.join(choices)}, got {shown(value)}")
         return str(value)
 
     def number(self, key: str, least: float, most: float, default: Any = MISSING) -> float:
@@ -108,7 +118,6 @@ class Section:
         key the values.
         """
         value = self.raw(key, MISSING if default is None else default)
-        where = self.where(key)
         if isinstance(value, dict):
             inner = self.section(key)
             nodes = inner.numbers("wavelength_nm", 1.0, 1e6)
@@ -118,40 +127,43 @@ class Section:
             inner.finish()
             return self._ordered(key, nodes, values)
         if isinstance(value, str):
-            table = load_table(value, where, self.folder)
-            columns = ["wavelength_nm", key]
-            if not set(columns) <= set(table.columns):
-                self.fail(
-                    key,
-                    f"table {value!r} must have columns {' and '.join(columns)}, "
-                    f"got {', '.join(table.columns)}",
-                )
-            nodes = table.columns["wavelength_nm"]
-            values = table.columns[key]
+            nodes, values = self.columns(key, "wavelength_nm", key)
             for one in values:
                 self._number(key, one, least, most)
             return self._ordered(key, nodes, values)
-        return Spectrum(where, (), (self._number(key, value, least, most),))
+        return Spectrum(self.where(key), (), (self._number(key, value, least, most),))
+
+    def table(self, key: str) -> dict[str, tuple[float, ...]]:
+        """Columns of the table that the key names: one of skybake, or a user's CSV file."""
+        return load_table(self.text(key), self.where(key), self.folder)
+
+    def columns(self, key: str, first: str, second: str) -> list[tuple[float, ...]]:
+        """Two columns of the table that the key names."""
+        table = self.table(key)
+        if not {first, second} <= set(table):
+            self.fail(
+                key,
+                f"table {shown(self.raw(key))} must have columns {first} and {second}, "
+                f"got {', '.join(table)}",
+            )
+        return [table[first], table[second]]
 
     def finish(self) -> None:
         """Refuse keys that nobody asked for."""
         for key in self._data:
             if key not in self._asked:
                 known = sorted(set(self._asked))
-                close = difflib.get_close_matches(key, known, n=1)
-                hint = f" (did you mean {close[0]!r}?)" if close else ""
-                self.fail("", f"unknown key {key!r}{hint}; known keys: {', '.join(known)}")
+                self.fail("", f"unknown key {shown(key)}; known keys: {', '.join(known)}")
 
     def _number(self, key: str, value: Any, least: float, most: float) -> float:
         # bool is an int to Python, but `optical_depth = true` is a slip.
         if isinstance(value, bool) or not isinstance(value, int | float):
-            self.fail(key, f"must be a number, got {value!r}")
-        if not math.isfinite(value):
-            self.fail(key, f"must be finite, got {value!r}")
-        if value < least:
-            self.fail(key, f"must be at least {least:g}, got {value!r}")
-        if value > most:
-            self.fail(key, f"must be at most {most:g}, got {value!r}")
+            self.fail(key, f"must be a number, got {shown(value)}")
+        # Written so that nan fails too.
+        if not value >= least:
+            self.fail(key, f"must be at least {least:g}, got {shown(value)}")
+        if not value <= most:
+            self.fail(key, f"must be at most {most:g}, got {shown(value)}")
         return float(value)
 
     def _ordered(self, key: str, nodes: tuple[float, ...], values: tuple[float, ...]) -> Spectrum:

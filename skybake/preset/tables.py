@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from pathlib import Path
 
 from skybake.errors import PresetError
@@ -12,20 +11,12 @@ from skybake.preset.find import read_text
 _DATA = Path(__file__).resolve().parents[1] / "data"
 
 
-@dataclass(frozen=True, slots=True)
-class Table:
-    """Columns of numbers by name, in the file's order."""
-
-    where: str
-    columns: dict[str, tuple[float, ...]]
-
-
 def is_user_file(name: str) -> bool:
     """Whether a preset's string means a file of the user's rather than a table of skybake."""
     return name.endswith(".csv") or "/" in name or "\\" in name
 
 
-def load_table(name: str, where: str, folder: Path) -> Table:
+def load_table(name: str, where: str, folder: Path) -> dict[str, tuple[float, ...]]:
     """Read a table.
 
     Parameters
@@ -36,6 +27,11 @@ def load_table(name: str, where: str, folder: Path) -> Table:
         Where the preset names it, for messages.
     folder : Path
         What the user's paths are relative to: the preset's folder.
+
+    Returns
+    -------
+    dict of str to tuple of float
+        Columns by their names, in the file's order and of equal length.
 
     Raises
     ------
@@ -54,7 +50,7 @@ def load_table(name: str, where: str, folder: Path) -> Table:
     return _parse(where, read_text(path))
 
 
-def _parse(where: str, text: str) -> Table:
+def _parse(where: str, text: str) -> dict[str, tuple[float, ...]]:
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
     if len(lines) < 2:
         raise PresetError(f"{where}: must have a line of column names and a line of numbers")
@@ -62,7 +58,7 @@ def _parse(where: str, text: str) -> Table:
     if len(set(names)) < len(names):
         raise PresetError(f"{where}: column names must differ, got {lines[0]!r}")
     rows = _rows(where, lines[1:], len(names))
-    return Table(where, dict(zip(names, zip(*rows, strict=True), strict=True)))
+    return dict(zip(names, zip(*rows, strict=True), strict=True))
 
 
 def _rows(where: str, lines: list[str], width: int) -> list[list[float]]:
