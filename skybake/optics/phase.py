@@ -135,3 +135,28 @@ def _tabulated(phase: TabulatedPhase, wavelengths: Array) -> Array:
                 f"got {value:.4f} at {wavelength:g} nm"
             )
     return table / integral
+
+
+def eval_phase(phase: Array, nu: Array) -> Array:
+    """Interpolate tabulated phase functions.
+
+    Parameters
+    ----------
+    phase : ndarray of float64, shape (constituent, SCATTERING_ANGLES, wavelength)
+        At `scattering_angles`. [sr⁻¹]
+    nu : ndarray of float64, shape (n,)
+        Cosines of scattering angles, in [-1, 1].
+
+    Returns
+    -------
+    ndarray of float64, shape (n, constituent, wavelength)
+        Linear in the nodes' coordinate. [sr⁻¹]
+    """
+    middle = SCATTERING_ANGLES // 2
+    forward = middle * np.sqrt(np.sqrt(np.maximum(1.0 - nu, 0.0)))
+    backward = 2 * middle - middle * np.sqrt(np.sqrt(np.maximum(1.0 + nu, 0.0)))
+    position = np.where(nu > 0.0, forward, backward)
+    left = np.minimum(position.astype(int), SCATTERING_ANGLES - 2)
+    fraction = (position - left)[:, None, None]
+    table = phase.transpose(1, 0, 2)
+    return (1.0 - fraction) * table[left] + fraction * table[left + 1]

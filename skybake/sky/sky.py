@@ -1,0 +1,218 @@
+"""A sky: one planet, one observer, one sun."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from skybake.errors import InputError
+from skybake.luts.closure import build_multiscatter
+from skybake.luts.multiscatter import MultiScatter
+from skybake.luts.ray import RayLight, trace_rays
+from skybake.luts.transmittance import build_columns
+from skybake.optics.medium import Array, build_medium
+from skybake.optics.phase import eval_phase
+from skybake.optics.spectrum import star_irradiance
+from skybake.preset import Planet, load_preset
+from skybake.sky.lobes import split_phase
+from skybake.sky.view import (
+    AZIMUTHS,
+    AZIMUTHS_TWILIGHT,
+    SkyView,
+    horizon_angles,
+    table_directions,
+)
+from skybake.transport.march import march_rays
+from skybake.transport.shells import altitude_shells
+
+METHODS = ("hillaire", "march")
+WAVELENGTHS = np.linspace(380.0, 720.0, 16)
+"""Default sampling of the visible spectrum; radiance is taken as linear between. [nm]"""
+
+LOWEST_EYE = 1e-5
+"""Altitude of an observer on the ground: one centimetre, so that a horizon exists. [km]"""
+
+TWILIGHT_ELEVATION = math.radians(2.0)
+
+
+class Sky:
+    """Radiance from any direction, for one observer and one sun.
+
+    Parameters
+    ----------
+    preset : Planet, str or Path
+        A loaded planet, the name of a preset, or the path of a preset's file.
+    sun_elevation : float
+        Geometric elevation of the sun's centre at the observer, in [-pi/2, pi/2]. [rad]
+    altitude : float, optional
+        Of the observer above the ground, at least 0. [km]
+    sun_azimuth : float, optional
+        Compass bearing of the sun, 0 = north, clockwise; default south. [rad]
+    wavelengths : array_like, optional
+        Ascending; default 16 from 380 to 720 nm, or the preset's own. [nm]
+    method : {"hillaire", "march"}, optional
+        Hillaire's tables, or single scattering by nested marching without tables.
+
+    Raises
+    ------
+    InputError
+        If a value is not finite or out of its range.
+    PresetError
+        If the preset cannot be used, or does not cover a wavelength.
+    """
+
+    def __init__(
+        self,
+        preset: Planet | str | Path,
+        sun_elevation: float,
+        altitude: float = 0.0,
+        *,
+        sun_azimuth: float = math.pi,
+        wavelengths: Array | None = None,
+        method: str = "hillaire",
+    ) -> None:
+        self.planet = preset if isinstance(preset, Planet) else load_preset(preset)
+        if not abs(sun_elevation) <= math.pi / 2.0 + 1e-9:
+            raise InputError(
+                "sun elevation: must be from -90 to 90 deg, got "
+                f"{math.degrees(sun_elevation):g} deg"
+            )
+        if not 0.0 <= altitude < math.inf:
+            raise InputError(f"altitude: must be at least 0 m, got {altitude * 1e3:g} m")
+        if not math.isfinite(sun_azimuth):
+            raise InputError(f"sun azimuth: must be finite, got {sun_azimuth}")
+        if method not in METHODS:
+            raise InputError(f"method: must be one of {', '.join(METHODS)}, got {method!r}")
+        if wavelengths is None:
+            wavelengths = np.array(self.planet.wavelengths or WAVELENGTHS, dtype=float)
+        self.wavelengths = np.asarray(wavelengths, dtype=float)
+        self.sun_elevation = sun_elevation
+        self.sun_azimuth = sun_azimuth
+        self.altitude = altitude
+        self.method = method
+        self.medium = build_medium(self.planet, self.wavelengths)
+        self.r = self.medium.r_bottom + max(altitude, LOWEST_EYE)
+
+    @cached_property
+    def irradiance(self) -> Array:
+        """The star's irradiance above the air, shape (wavelength,). [W m⁻² nm⁻¹]"""
+        return star_irradiance(self.planet.star, self.wavelengths)
+
+    @property
+    def sun_direction(self) -> Array:
+        """Unit vector toward the sun: right-handed, +Y up, -Z north, +X east."""
+        horizontal = math.cos(self.sun_elevation)
+        return np.array(
+            [
+                horizontal * math.sin(self.sun_azimuth),
+                math.sin(self.sun_elevation),
+                -horizontal * math.cos(self.sun_azimuth),
+            ]
+        )
+
+    def radiance(self, directions: Array) -> Array:
+        """Radiance of air and ground, without the sun's own disc.
+
+        Parameters
+        ----------
+        directions : array_like, shape (..., 3)
+            Away from the observer, of any length; axes as in `sun_direction`.
+
+        Returns
+        -------
+        ndarray of float64, shape (..., wavelength)
+            Each integrated along its own ray. [W m⁻² sr⁻¹ nm⁻¹]
+
+        Raises
+        ------
+        InputError
+            If a direction has no length or is not finite.
+        """
+        directions = np.asarray(directions, dtype=float)
+        length = np.linalg.norm(directions, axis=-1, keepdims=True)
+        if not (np.isfinite(length).all() and (length > 0.0).all()):
+            raise InputError("directions: must be finite and longer than 0")
+        unit = directions / length
+        mu = unit[..., 1]
+        nu = unit @ self.sun_direction
+        return self.radiance_per_irradiance(mu, nu) * self.irradiance
+
+    def radiance_per_irradiance(self, mu: Array, nu: Array) -> Array:
+        """Radiance per unit irradiance of the sun above the air.
+
+        Parameters
+        ----------
+        mu, nu : ndarray of float64, of the same shape
+            Cosines of the zenith angle of the view and of its angle to the sun.
+
+        Returns
+        -------
+        ndarray of float64, shape (..., wavelength)
+            [sr⁻¹]
+        """
+        light = self._light(mu.ravel(), nu.ravel())
+        phase = eval_phase(self.medium.phase, nu.ravel())
+        radiance = (light.single * phase).sum(axis=1) + light.diffuse
+        return radiance.reshape(*mu.shape, -1)
+
+    def view(self, rgb_weights: Array) -> SkyView:
+        """Tabulate the sky around the observer in a colour space.
+
+        Parameters
+        ----------
+        rgb_weights : ndarray of float64, shape (wavelength, 3)
+            RGB is the radiance per unit irradiance times these.
+
+        Returns
+        -------
+        SkyView
+            For `skybake.sky.view.fill_directions`.
+        """
+        zenith_first, zenith_horizon = horizon_angles(
+            self.r, self.medium.r_bottom, self.medium.r_top
+        )
+        is_day = self.sun_elevation > TWILIGHT_ELEVATION and zenith_first == 0.0
+        zenith, azimuth = table_directions(
+            zenith_first, zenith_horizon, AZIMUTHS if is_day else AZIMUTHS_TWILIGHT
+        )
+        sun_zenith = math.pi / 2.0 - self.sun_elevation
+        theta, phi = np.broadcast_arrays(zenith[:, :, None], azimuth)
+        mu = np.cos(theta)
+        nu = mu * math.cos(sun_zenith) + np.sin(theta) * math.sin(sun_zenith) * np.cos(phi)
+        light = self._light(mu.ravel(), nu.ravel())
+        lobes = split_phase(self.medium.phase)
+        fold = np.einsum("cwq,wk->cwkq", lobes.weights, rgb_weights)
+        table = np.tensordot(light.single, fold, axes=2)
+        table[:, :, 0] += light.diffuse @ rgb_weights
+        return SkyView(
+            zenith_first=zenith_first,
+            zenith_horizon=zenith_horizon,
+            sun_zenith=sun_zenith,
+            table=table.reshape(*theta.shape, -1).astype(np.float32),
+            curves=np.ascontiguousarray(lobes.curves.T, dtype=np.float32),
+        )
+
+    def _light(self, mu: Array, nu: Array) -> RayLight:
+        r = np.full(mu.shape, self.r)
+        mu_s = np.full(mu.shape, math.sin(self.sun_elevation))
+        nu = np.clip(nu, -1.0, 1.0)
+        if self.method == "march":
+            return RayLight(*march_rays(self.medium, r, mu, mu_s, nu))
+        return trace_rays(
+            self.medium, self._shells, self._columns, self._multiple, r, mu, mu_s, nu
+        )
+
+    @cached_property
+    def _shells(self) -> Array:
+        return altitude_shells(self.medium)
+
+    @cached_property
+    def _columns(self) -> Array:
+        return build_columns(self.medium)
+
+    @cached_property
+    def _multiple(self) -> MultiScatter:
+        return build_multiscatter(self.medium, self._columns)

@@ -1,0 +1,246 @@
+"""Sample points along a line of sight, with the transmittance back to its start."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from skybake.optics.medium import Array, Medium
+from skybake.transport.density import GAUSS_FAR, GAUSS_LOW, GAUSS_NEAR, GAUSS_SELF, fill_density
+from skybake.transport.exponential import fast_exp
+from skybake.transport.geometry import (
+    distance_to_entry,
+    distance_to_exit,
+    radius_at,
+    shadow_interval,
+    squared_closest_approach,
+)
+from skybake.transport.kernel import kernel
+
+MAX_SAMPLES = 4096
+MAX_ARC = math.radians(0.5)
+MAX_STEP_OPTICAL_DEPTH = 1.0
+OPAQUE = 1e-9
+
+
+class Samples(NamedTuple):
+    """Work space of one ray: what is known of it before the sun's light is added.
+
+    Attributes
+    ----------
+    distance, radius : ndarray of float64, shape (MAX_SAMPLES,)
+        Distance from the observer and from the planet's centre. [km]
+    lit : ndarray of bool, shape (MAX_SAMPLES,)
+        Whether the point is outside the planet's shadow.
+    density : ndarray of float64, shape (MAX_SAMPLES, constituent)
+        Relative densities.
+    weight : ndarray of float64, shape (MAX_SAMPLES, wavelength)
+        Transmittance to the observer times the length that the sample stands
+        for; a sum of weight * source is the integral along the ray. [km]
+    transmittance : ndarray of float64, shape (wavelength,)
+        Transmittance of the whole ray.
+    column : ndarray of float64, shape (constituent,)
+        Columns of the whole ray. [km]
+    sun_column, light : ndarray of float64, shapes (constituent,) and (wavelength,)
+        Scratch of whoever adds light to the samples.
+    """
+
+    distance: Array
+    radius: Array
+    lit: npt.NDArray[np.bool_]
+    density: Array
+    weight: Array
+    transmittance: Array
+    column: Array
+    sun_column: Array
+    light: Array
+
+
+def allocate_samples(medium: Medium) -> Samples:
+    """Make the work space for rays through `medium`; each thread needs its own."""
+    constituents, wavelengths = medium.extinction.shape
+    return Samples(
+        distance=np.empty(MAX_SAMPLES),
+        radius=np.empty(MAX_SAMPLES),
+        lit=np.empty(MAX_SAMPLES, np.bool_),
+        density=np.empty((MAX_SAMPLES, constituents)),
+        weight=np.empty((MAX_SAMPLES, wavelengths)),
+        transmittance=np.empty(wavelengths),
+        column=np.empty(constituents),
+        sun_column=np.empty(constituents),
+        light=np.empty(wavelengths),
+    )
+
+
+@kernel
+def ray_limits(medium, r, mu):
+    """Where a ray enters and leaves the air, and whether it ends on the ground.
+
+    Returns
+    -------
+    (float, float, bool)
+        First and last distance in the air, equal if it misses the air; whether
+        the ray ends on the ground. [km]
+    """
+    first = 0.0
+    if r > medium.r_top:
+        first = distance_to_entry(r, mu, medium.r_top)
+        if first == math.inf:
+            return 0.0, 0.0, False
+    ground = distance_to_entry(r, mu, medium.r_bottom)
+    if ground < math.inf:
+        return first, max(first, ground), True
+    return first, max(first, distance_to_exit(r, mu, medium.r_top)), False
+
+
+@kernel
+def trace(medium, shells, r, mu, mu_s, nu, samples):
+    """Fill `samples` along a ray and find where it ends.
+
+    Parameters
+    ----------
+    medium : Medium
+        The atmosphere.
+    shells : ndarray of float64
+        Altitudes at which steps end, ascending from the ground to the top. [km]
+    r, mu : float
+        Start of the ray, inside the air or outside, and cosine of its zenith
+        angle. [km]
+    mu_s, nu : float
+        Cosines of the sun's zenith angle at the start and of the angle between
+        ray and sun; they only decide where the planet's shadow lies.
+    samples : Samples
+        Work space that receives the result.
+
+    Returns
+    -------
+    (int, float, bool)
+        Number of samples, length of the ray [km], whether it ends on the ground.
+
+    Notes
+    -----
+    Steps end at shells, at the point closest to the planet, at the edges of the
+    planet's shadow, after half a degree of arc and after one optical depth.
+    Each has two Gauss-Legendre points, so that smooth integrands are integrated
+    to fourth order and neither kinks of the profile nor the shadow's edge falls
+    inside a step.
+    """
+    t, t_last, hits_ground = ray_limits(medium, r, mu)
+    constituents, wavelengths = medium.extinction.shape
+    for k in range(wavelengths):
+        samples.transmittance[k] = 1.0
+    for c in range(constituents):
+        samples.column[c] = 0.0
+    dark_first, dark_last = shadow_interval(r, mu, mu_s, nu, medium.r_bottom, t, t_last)
+    t_closest = -r * mu
+    closest_squared = squared_closest_approach(r, mu)
+    layer = _layer_at(shells, radius_at(r, mu, t) - medium.r_bottom, t < t_closest)
+    arc = MAX_ARC * medium.r_bottom
+    n = 0
+    while t < t_last and n + 2 <= MAX_SAMPLES:
+        descending = t < t_closest
+        t_shell, next_layer = _next_shell(
+            shells, layer, descending, medium.r_bottom, t_closest, closest_squared
+        )
+        t_next = min(t_shell, t + arc, t_last)
+        if t < dark_first:
+            t_next = min(t_next, dark_first)
+        elif t < dark_last:
+            t_next = min(t_next, dark_last)
+        if n + 2 < MAX_SAMPLES // 2:
+            t_next = _limit_depth(medium, r, mu, t, t_next, samples.transmittance, samples.density[n])
+        lit = t_next <= dark_first or t >= dark_last
+        brightest = _add_step(medium, r, mu, t, t_next - t, lit, n, samples)
+        n += 2
+        if t_next >= t_shell:
+            layer = next_layer
+        t = t_next
+        if brightest < OPAQUE:
+            break
+    return n, t_last, hits_ground
+
+
+@kernel
+def _layer_at(shells, h, descending):
+    """Index i such that `h`, or the point next to it along the ray, is in shells i..i+1."""
+    i = 0
+    while i < shells.size - 2 and (shells[i + 1] < h or (shells[i + 1] == h and not descending)):
+        i += 1
+    return i
+
+
+@kernel
+def _next_shell(shells, layer, descending, r_bottom, t_closest, closest_squared):
+    """Distance of the next shell that the ray crosses, and the layer behind it."""
+    if descending and layer == 0:
+        # Only the ground lies below, and there the ray ends by itself.
+        return (math.inf if closest_squared < r_bottom * r_bottom else t_closest), 0
+    if descending:
+        r_shell = r_bottom + shells[layer]
+        if r_shell * r_shell <= closest_squared:
+            return t_closest, layer
+        t_shell = t_closest - math.sqrt(r_shell * r_shell - closest_squared)
+        return t_shell, layer - 1
+    r_shell = r_bottom + shells[layer + 1]
+    t_shell = t_closest + math.sqrt(max(0.0, r_shell * r_shell - closest_squared))
+    if layer + 2 < shells.size:
+        return t_shell, layer + 1
+    return math.inf, layer
+
+
+@kernel
+def _limit_depth(medium, r, mu, t, t_next, transmittance, scratch):
+    """Shorten a step until no wavelength that still counts gains more than one depth."""
+    h = radius_at(r, mu, 0.5 * (t + t_next)) - medium.r_bottom
+    fill_density(medium.density, medium.r_bottom, medium.r_top, h, scratch)
+    thickest = 0.0
+    for k in range(transmittance.size):
+        extinction = 0.0
+        for c in range(scratch.size):
+            extinction += scratch[c] * medium.extinction[c, k]
+        if transmittance[k] > 1e-6:
+            thickest = max(thickest, extinction)
+    depth = thickest * (t_next - t)
+    if depth <= MAX_STEP_OPTICAL_DEPTH:
+        return t_next
+    return t + (t_next - t) * max(MAX_STEP_OPTICAL_DEPTH / depth, 1.0 / 16.0)
+
+
+@kernel
+def _add_step(medium, r, mu, t, step, lit, n, samples):
+    """Append the two points of a step and return the largest transmittance behind it."""
+    constituents, wavelengths = medium.extinction.shape
+    for i in range(2):
+        distance = t + step * (GAUSS_LOW if i == 0 else 1.0 - GAUSS_LOW)
+        radius = radius_at(r, mu, distance)
+        samples.distance[n + i] = distance
+        samples.radius[n + i] = radius
+        samples.lit[n + i] = lit
+        h = radius - medium.r_bottom
+        fill_density(medium.density, medium.r_bottom, medium.r_top, h, samples.density[n + i])
+    for k in range(wavelengths):
+        samples.weight[n, k] = 0.0
+        samples.weight[n + 1, k] = 0.0
+        samples.transmittance[k] = 0.0
+    for c in range(constituents):
+        low = samples.density[n, c]
+        high = samples.density[n + 1, c]
+        to_low = samples.column[c] + step * (GAUSS_SELF * low + GAUSS_FAR * high)
+        to_high = samples.column[c] + step * (GAUSS_NEAR * low + GAUSS_SELF * high)
+        to_end = samples.column[c] + 0.5 * step * (low + high)
+        samples.column[c] = to_end
+        for k in range(wavelengths):
+            extinction = medium.extinction[c, k]
+            samples.weight[n, k] -= extinction * to_low
+            samples.weight[n + 1, k] -= extinction * to_high
+            samples.transmittance[k] -= extinction * to_end
+    brightest = 0.0
+    for k in range(wavelengths):
+        samples.weight[n, k] = 0.5 * step * fast_exp(samples.weight[n, k])
+        samples.weight[n + 1, k] = 0.5 * step * fast_exp(samples.weight[n + 1, k])
+        samples.transmittance[k] = fast_exp(samples.transmittance[k])
+        brightest = max(brightest, samples.transmittance[k])
+    return brightest
