@@ -1,0 +1,1 @@
+"""Spectra to linear RGB, and the light that an RGB of one stands for."""

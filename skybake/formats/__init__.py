@@ -1,0 +1,1 @@
+"""Image files: the one place that knows OpenImageIO."""

@@ -1,0 +1,89 @@
+"""OpenEXR maps: half or float, tagged with space, scale and mapping."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO
+
+from skybake.errors import OutputError
+from skybake.formats.compression import largest_value, parse_compression
+from skybake.formats.scanlines import Rows, ScanlineWriter
+from skybake.formats.spec import UNDATED, Attribute, MapSpec
+
+# Only this name becomes OpenEXR's `envmap`; under the name `envmap` OpenImageIO would
+# write an integer that no reader takes for it.
+_TEXTURE_FORMAT = {"latlong": "LatLong Environment", "cube": "CubeFace Environment"}
+
+
+class ExrWriter(ScanlineWriter):
+    """Writes an OpenEXR file row by row.
+
+    Parameters
+    ----------
+    path, temporary : Path
+        The target, for messages, and the file to write.
+    spec : MapSpec
+        What it holds.
+
+    Raises
+    ------
+    InputError
+        If the compression is unknown.
+    OutputError
+        If the file cannot be written, or a value does not fit its type.
+    """
+
+    def __init__(self, path: Path, temporary: Path, spec: MapSpec) -> None:
+        super().__init__(path, temporary, image_spec(spec))
+        self._spec = spec
+        self._largest = largest_value(spec.pixel, spec.compression)
+
+    def write_rows(self, y_begin: int, y_end: int, rows: Rows) -> None:
+        """Write rows `y_begin` to `y_end`, the latter excluded, shape (row, column, channel)."""
+        self._check_range(rows)
+        super().write_rows(y_begin, y_end, rows)
+
+    def _check_range(self, rows: Rows) -> None:
+        """Refuse what would come back as infinity; OpenImageIO stores it without a word."""
+        low, high = float(rows.min()), float(rows.max())
+        if max(-low, high) <= self._largest:
+            return
+        got = low if -low > high else high
+        if not np.isfinite(got):
+            raise OutputError(f"{self._path}: radiance must be finite, got {got}")
+        raise OutputError(
+            f"{self._path}: radiance in {self._spec.pixel} with {self._spec.compression} must be "
+            f"at most {self._largest:g}, got {got:g}; use a larger unit, float with a lossless "
+            "compression, or leave the sun's disc out"
+        )
+
+
+def image_spec(spec: MapSpec) -> OpenImageIO.ImageSpec:
+    """Header of an OpenEXR file."""
+    name, level = parse_compression(spec.compression)
+    header = OpenImageIO.ImageSpec(spec.width, spec.height, len(spec.channels), spec.pixel)
+    header.channelnames = spec.channels
+    header["compression"] = name if level is None else f"{name}:{level:g}"
+    if spec.envmap is not None:
+        header["textureformat"] = _TEXTURE_FORMAT[spec.envmap]
+        # One level: else OpenImageIO awaits mip levels, and closing does not end the file.
+        header["openexr:levelmode"] = 0
+    header["oiio:ColorSpace"] = spec.colour_space.interop_id
+    header.attribute("chromaticities", "float[8]", tuple(spec.colour_space.chromaticities))
+    header.attribute("adoptedNeutral", "float[2]", tuple(spec.colour_space.neutral))
+    header.attribute("whiteLuminance", "float", spec.white_luminance)
+    for key, value in {"DateTime": UNDATED, "Software": "skybake", **spec.attributes}.items():
+        _set_attribute(header, key, value)
+    return header
+
+
+def _set_attribute(header: OpenImageIO.ImageSpec, key: str, value: Attribute) -> None:
+    if isinstance(value, tuple):
+        kind = "vector" if len(value) == 3 else f"float[{len(value)}]"
+        header.attribute(key, kind, tuple(float(v) for v in value))
+    elif isinstance(value, float):
+        header.attribute(key, "float", value)
+    else:
+        header.attribute(key, value)

@@ -1,0 +1,121 @@
+"""Pictures to look at: the ACES display transforms, as eight-bit PNG."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+import OpenImageIO
+
+from skybake.errors import InputError
+from skybake.formats.partial import replace_when_whole, write_error
+from skybake.formats.spec import UNDATED, Tagged
+
+View = Literal["aces2", "aces1"]
+
+# Named, because the defaults of OpenColorIO follow $OCIO and the version of the library.
+_VIEWS = {
+    "aces2": (
+        "ocio://cg-config-v4.0.0_aces-v2.0_ocio-v2.5",
+        "ACES 2.0 - SDR 100 nits (Rec.709)",
+    ),
+    "aces1": ("ocio://cg-config-v2.2.0_aces-v1.3_ocio-v2.4", "ACES 1.0 - SDR Video"),
+}
+VIEWS = tuple(_VIEWS)
+"""Display transforms by name; the first is the default."""
+
+_END_OF_PNG = b"IEND\xaeB`\x82"
+
+
+def write_preview(
+    path: Path,
+    pixels: npt.NDArray[np.float32],
+    colour_space: Tagged,
+    *,
+    gain: float,
+    view: View = "aces2",
+    max_width: int = 1024,
+) -> None:
+    """Write a display-referred sRGB picture of a map.
+
+    Parameters
+    ----------
+    path : Path
+        ``.png``.
+    pixels : ndarray of float32, shape (row, column, 3)
+        Scene-linear and finite.
+    colour_space : Tagged
+        Their space.
+    gain : float
+        Exposure: factor from pixels to the scene-linear values of ACES, where 0.18
+        is middle grey.
+    view : {"aces2", "aces1"}
+        Display transform: ACES 2.0, or that of ACES 1.3.
+    max_width : int
+        Larger maps are made smaller before the display transform. [pixel]
+
+    Raises
+    ------
+    InputError
+        If the suffix or the view is not known.
+    OutputError
+        If the file cannot be written.
+    """
+    if path.suffix.lower() != ".png":
+        raise InputError(f"{path}: suffix of a preview must be .png, got {path.suffix!r}")
+    if view not in _VIEWS:
+        raise InputError(f"view: must be one of {', '.join(VIEWS)}, got {view!r}")
+    shown = display_values(_shrink(pixels, max_width) * np.float32(gain), colour_space, view)
+    spec = OpenImageIO.ImageSpec(shown.shape[1], shown.shape[0], 3, "uint8")
+    spec["oiio:ColorSpace"] = "srgb_rec709_display"
+    spec["oiio:dither"] = 1
+    spec["DateTime"] = UNDATED
+    with replace_when_whole(path) as temporary:
+        output = OpenImageIO.ImageOutput.create(str(temporary))
+        if output is None:
+            raise write_error(path, temporary, OpenImageIO.geterror())
+        written = output.open(str(temporary), spec) and output.write_image(shown)
+        output.close()
+        message = output.geterror()
+        # The library's last block can fail to reach a full disk without a word.
+        if not written or message or not temporary.read_bytes().endswith(_END_OF_PNG):
+            raise write_error(path, temporary, message)
+
+
+def display_values(
+    pixels: npt.NDArray[np.float32], colour_space: Tagged, view: View
+) -> npt.NDArray[np.float32]:
+    """Display-referred sRGB code values in [0, 1] of scene-linear pixels."""
+    config, view_name = _VIEWS[view]
+    source = OpenImageIO.ImageBuf(np.ascontiguousarray(pixels))
+    shown = OpenImageIO.ImageBufAlgo.ociodisplay(
+        source,
+        display="sRGB - Display",
+        view=view_name,
+        fromspace=colour_space.interop_id,
+        colorconfig=config,
+    )
+    if shown.has_error:
+        raise RuntimeError(f"{config} must know {view_name}, got {shown.geterror()}")
+    # The ACES 1 view leaves values outside of the display, down to -1.
+    values: npt.NDArray[np.float32] = np.clip(_pixels(shown), 0.0, 1.0)
+    return values
+
+
+def _shrink(pixels: npt.NDArray[np.float32], max_width: int) -> npt.NDArray[np.float32]:
+    """Average to at most a width; a triangle is positive, so the sun does not ring."""
+    height, width = pixels.shape[:2]
+    if width <= max_width:
+        return pixels
+    size = OpenImageIO.ROI(0, max_width, 0, max(1, round(height * max_width / width)), 0, 1, 0, 3)
+    source = OpenImageIO.ImageBuf(np.ascontiguousarray(pixels))
+    smaller = OpenImageIO.ImageBufAlgo.resize(source, filtername="triangle", roi=size)
+    if smaller.has_error:
+        raise RuntimeError(f"resize must succeed, got {smaller.geterror()}")
+    return _pixels(smaller)
+
+
+def _pixels(image: OpenImageIO.ImageBuf) -> npt.NDArray[np.float32]:
+    return np.asarray(image.get_pixels(OpenImageIO.FLOAT), np.float32)

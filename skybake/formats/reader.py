@@ -1,0 +1,79 @@
+"""Maps back from files."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import OpenImageIO
+
+from skybake.errors import InputError
+from skybake.formats.hdr import RADIANCE_EFFICACY, read_header
+
+
+def read_image(path: Path) -> tuple[npt.NDArray[np.float32], dict[str, Any]]:
+    """Read the R, G and B of a scene-linear image.
+
+    Parameters
+    ----------
+    path : Path
+        Any image of half or float pixels that OpenImageIO reads.
+
+    Returns
+    -------
+    pixels : ndarray of float32, shape (row, column, 3)
+        As stored, finite.
+    attributes : dict
+        By the file's own names; of a Radiance picture also `chromaticities` and
+        `whiteLuminance` where its header implies them.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, damaged, of integers, without R, G, B, or not finite.
+    """
+    if not path.is_file():
+        raise InputError(f"{path}: must be an image file, got {_what_instead(path)}")
+    source = OpenImageIO.ImageInput.open(str(path))
+    if source is None:
+        raise InputError(f"{path}: must be an image, got {_first_line(OpenImageIO.geterror())}")
+    spec = source.spec()
+    names = [name.upper() for name in spec.channelnames]
+    if spec.format.basetype not in {OpenImageIO.HALF, OpenImageIO.FLOAT}:
+        raise InputError(f"{path}: pixels must be half or float, got {spec.format}")
+    if names[:3] != ["R", "G", "B"]:
+        raise InputError(f"{path}: channels must be R, G, B, got {', '.join(spec.channelnames)}")
+    pixels = None
+    with suppress(RuntimeError):
+        pixels = source.read_image(0, 0, 0, 3, OpenImageIO.FLOAT)
+    if pixels is None:
+        raise InputError(f"{path}: must be whole, got {_first_line(source.geterror())}")
+    source.close()
+    if not np.isfinite(pixels).all():
+        raise InputError(f"{path}: pixels must be finite, got NaN or infinity")
+    attributes: dict[str, Any] = {a.name: a.value for a in spec.extra_attribs}
+    if source.format_name() == "hdr":
+        attributes |= _radiance_attributes(path)
+    return pixels, attributes
+
+
+def _radiance_attributes(path: Path) -> dict[str, Any]:
+    """Return what a Radiance header says, under OpenEXR's names."""
+    header = read_header(path)
+    attributes: dict[str, Any] = dict(header)
+    if "EXPOSURE" in header:
+        attributes["whiteLuminance"] = RADIANCE_EFFICACY / float(header["EXPOSURE"])
+    if "PRIMARIES" in header:
+        attributes["chromaticities"] = tuple(float(v) for v in header["PRIMARIES"].split())
+    return attributes
+
+
+def _what_instead(path: Path) -> str:
+    return "a folder" if path.is_dir() else "nothing" if not path.exists() else "a device or pipe"
+
+
+def _first_line(message: str) -> str:
+    return message.strip().partition("\n")[0] or "an unknown error"

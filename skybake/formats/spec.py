@@ -1,0 +1,85 @@
+"""What a map file holds beside its pixels."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal, Protocol
+
+from skybake.errors import InputError
+
+Attribute = str | int | float | tuple[float, ...]
+"""Value of an attribute; three floats are a direction, other tuples a plain array."""
+
+HALF_MAX = 65504.0
+"""Largest finite half float."""
+
+UNDATED = "1970:01:01 00:00:00"
+"""Date of a map that is of no date. OpenImageIO would write the present time, and the
+same map would give other bytes with every run."""
+
+
+class Tagged(Protocol):
+    """A colour space as files name it, see `skybake.colour.space.ColourSpace`."""
+
+    @property
+    def interop_id(self) -> str:
+        """Name by the Color Interop Forum."""
+
+    @property
+    def chromaticities(self) -> tuple[float, ...]:
+        """CIE xy of red, green, blue and white."""
+
+    @property
+    def neutral(self) -> tuple[float, float]:
+        """CIE xy of what looks neutral."""
+
+
+@dataclass(frozen=True)
+class MapSpec:
+    """What a map file holds beside its pixels.
+
+    Attributes
+    ----------
+    width, height : int
+        Size of the whole file. [pixel]
+    colour_space : Tagged
+        Space of the pixels.
+    white_luminance : float
+        Luminance of RGB (1, 1, 1). [cd m⁻²]
+    pixel : {"half", "float"}
+        Stored type; Radiance files hold RGBE whatever is said here.
+    compression : str
+        One of `skybake.formats.compression.COMPRESSIONS`, with an optional level
+        after a colon. Radiance files have one compression of their own.
+    envmap : {"latlong", "cube", None}
+        How directions map to pixels, as OpenEXR's `envmap` attribute has it.
+    channels : tuple of str
+        Names in the order of the arrays' last axis.
+    attributes : mapping of str to Attribute
+        Anything else, as ``{"skybake:sunDirection": (0.0, 0.5, 0.866)}``. `DateTime`
+        and `Software` become the standard attributes of each format.
+    """
+
+    width: int
+    height: int
+    colour_space: Tagged
+    white_luminance: float
+    pixel: Literal["half", "float"] = "half"
+    compression: str = "zip"
+    envmap: Literal["latlong", "cube"] | None = None
+    channels: tuple[str, ...] = ("R", "G", "B")
+    attributes: Mapping[str, Attribute] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Refuse what no file can hold."""
+        if self.width < 1 or self.height < 1:
+            raise InputError(
+                f"size: width and height must be at least 1, got {self.width}x{self.height}"
+            )
+        if self.pixel not in {"half", "float"}:
+            raise InputError(f"pixel: must be one of half, float, got {self.pixel!r}")
+        if not 0.0 < self.white_luminance < float("inf"):
+            raise InputError(
+                f"white_luminance: must be positive, got {self.white_luminance:g} cd/m2"
+            )
