@@ -134,7 +134,8 @@ def _tabulated(phase: TabulatedPhase, wavelengths: Array) -> Array:
                 f"{phase.where}: must integrate to 1 over the sphere within 1 %, "
                 f"got {value:.4f} at {wavelength:g} nm"
             )
-    return table / integral
+    normalised: Array = table / integral
+    return normalised
 
 
 def eval_phase(phase: Array, nu: Array) -> Array:
@@ -159,4 +160,5 @@ def eval_phase(phase: Array, nu: Array) -> Array:
     left = np.minimum(position.astype(int), SCATTERING_ANGLES - 2)
     fraction = (position - left)[:, None, None]
     table = phase.transpose(1, 0, 2)
-    return (1.0 - fraction) * table[left] + fraction * table[left + 1]
+    interpolated: Array = (1.0 - fraction) * table[left] + fraction * table[left + 1]
+    return interpolated

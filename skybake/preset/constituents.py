@@ -211,7 +211,7 @@ def _read_asymmetry(section: Section, key: str) -> Spectrum:
 
 
 def _read_tabulated_phase(section: Section) -> TabulatedPhase:
-    columns = section.table("table")
+    columns = section.table("table", "angle_deg")
     angle = columns.get("angle_deg", ())
     if not angle or angle[0] != 0.0 or angle[-1] != 180.0:
         section.fail("table", "column angle_deg must run from 0 to 180")
@@ -224,6 +224,8 @@ def _read_tabulated_phase(section: Section) -> TabulatedPhase:
     )
     if not bands:
         section.fail("table", "must have a column of values beside angle_deg")
+    if len({wavelength for wavelength, _ in bands}) < len(bands):
+        section.fail("table", "wavelengths must differ from each other")
     if any(min(values) <= 0.0 for _, values in bands):
         section.fail("table", "values must be greater than 0")
     return TabulatedPhase(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from skybake.errors import PresetError
+from skybake.preset.message import shown
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 
@@ -22,7 +23,7 @@ def preset_text(name: str) -> str:
     PresetError
         If there is none of that name; the message lists the known ones.
     """
-    return read_text(find_preset(name))
+    return read_text(find_preset(name), name)
 
 
 def find_preset(name_or_path: str | Path) -> Path:
@@ -46,7 +47,7 @@ def find_preset(name_or_path: str | Path) -> Path:
     names = preset_names()
     if name_or_path not in names:
         raise PresetError(
-            f"unknown preset {name_or_path!r}; known presets: {', '.join(names)}; "
+            f"unknown preset {shown(name_or_path)}; known presets: {', '.join(names)}; "
             "a file of your own needs the ending .toml"
         )
     return _folder() / f"{name_or_path}.toml"
@@ -57,16 +58,16 @@ def display_name(path: Path) -> str:
     return path.name if path.parent == _folder() else str(path)
 
 
-def read_text(path: Path) -> str:
-    """Read a text file; a fault is a PresetError of one line."""
+def read_text(path: Path, where: str) -> str:
+    """Read a text file; a fault is a PresetError of one line that starts with `where`."""
     try:
         return path.read_text(encoding="utf-8-sig")  # spreadsheets write a byte order mark
     except OSError as error:
-        raise PresetError(f"{display_name(path)}: cannot be read: {error.strerror}") from error
+        raise PresetError(f"{where}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
-        raise PresetError(f"{display_name(path)}: must be UTF-8 text") from error
+        raise PresetError(f"{where}: must be UTF-8 text") from error
     except ValueError as error:
-        raise PresetError(f"{display_name(path)!r}: cannot be read: {error}") from error
+        raise PresetError(f"{where}: cannot be read: {error}") from error
 
 
 def _folder() -> Path:

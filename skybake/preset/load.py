@@ -12,8 +12,9 @@ from skybake.constants import ASTRONOMICAL_UNIT
 from skybake.errors import PresetError
 from skybake.preset.constituents import read_constituent
 from skybake.preset.find import display_name, find_preset, read_text
+from skybake.preset.message import shown
 from skybake.preset.model import Ground, Planet, Star
-from skybake.preset.section import Section, shown
+from skybake.preset.section import Section
 from skybake.preset.tables import is_user_file
 
 MAX_CONSTITUENTS = 16
@@ -44,7 +45,7 @@ def load_preset(name_or_path: str | Path) -> Planet:
     """
     path = find_preset(name_or_path)
     file = display_name(path)
-    text = read_text(path)
+    text = read_text(path, file)
     try:
         document = tomllib.loads(text)
     # A ValueError that is no TOMLDecodeError comes from an integer of thousands of digits.

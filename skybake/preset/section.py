@@ -6,23 +6,12 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from skybake.errors import PresetError
+from skybake.preset.message import shown
 from skybake.preset.model import Spectrum
 from skybake.preset.tables import load_table
 
 MISSING: Any = object()
 """Default of a key that must be given."""
-
-MAX_SHOWN = 60
-"""Characters of a value that a message repeats."""
-
-
-def shown(value: Any) -> str:
-    """Value for a message: one line, cut where it gets long."""
-    try:
-        text = repr(value)
-    except ValueError:  # Python refuses to print an integer of more than 4300 digits.
-        return "an integer of thousands of digits"
-    return text if len(text) <= MAX_SHOWN else f"{text[:MAX_SHOWN]}..."
 
 
 class Section:
@@ -91,7 +80,7 @@ class Section:
     def choice(self, key: str, choices: tuple[str, ...], default: Any = MISSING) -> str:
         """One of a few strings."""
         value = self.raw(key, default)
-        if value not in choices:
+        if not isinstance(value, str) or value not in choices:
             self.fail(key, f"must be one of {', '.join(choices)}, got {shown(value)}")
         return str(value)
 
@@ -133,13 +122,13 @@ class Section:
             return self._ordered(key, nodes, values)
         return Spectrum(self.where(key), (), (self._number(key, value, least, most),))
 
-    def table(self, key: str) -> dict[str, tuple[float, ...]]:
+    def table(self, key: str, column: str) -> dict[str, tuple[float, ...]]:
         """Columns of the table that the key names: one of skybake, or a user's CSV file."""
-        return load_table(self.text(key), self.where(key), self.folder)
+        return load_table(self.text(key), self.where(key), self.folder, column)
 
     def columns(self, key: str, first: str, second: str) -> list[tuple[float, ...]]:
         """Two columns of the table that the key names."""
-        table = self.table(key)
+        table = self.table(key, second)
         if not {first, second} <= set(table):
             self.fail(
                 key,

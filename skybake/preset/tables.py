@@ -7,6 +7,7 @@ from pathlib import Path
 
 from skybake.errors import PresetError
 from skybake.preset.find import read_text
+from skybake.preset.message import shown
 
 _DATA = Path(__file__).resolve().parents[1] / "data"
 
@@ -16,7 +17,7 @@ def is_user_file(name: str) -> bool:
     return name.endswith(".csv") or "/" in name or "\\" in name
 
 
-def load_table(name: str, where: str, folder: Path) -> dict[str, tuple[float, ...]]:
+def load_table(name: str, where: str, folder: Path, column: str) -> dict[str, tuple[float, ...]]:
     """Read a table.
 
     Parameters
@@ -27,6 +28,8 @@ def load_table(name: str, where: str, folder: Path) -> dict[str, tuple[float, ..
         Where the preset names it, for messages.
     folder : Path
         What the user's paths are relative to: the preset's folder.
+    column : str
+        A column that it needs, to tell which tables of skybake would do.
 
     Returns
     -------
@@ -39,24 +42,33 @@ def load_table(name: str, where: str, folder: Path) -> dict[str, tuple[float, ..
         If there is no such table or it is not a rectangle of finite numbers.
     """
     if is_user_file(name):
-        return _parse(f"{where}: {name}", read_text(folder / name))
-    path = _DATA / f"{name}.csv"
-    if not path.is_file():
-        known = ", ".join(sorted(path.stem for path in _DATA.glob("*.csv")))
+        where = f"{where}: {shown(name)}"
+        return _parse(where, read_text(folder / name, where))
+    paths = {path.stem: path for path in _DATA.glob("*.csv")}
+    if name not in paths:
+        known = ", ".join(sorted(k for k, path in paths.items() if column in _columns(path)))
         raise PresetError(
-            f"{where}: unknown table {name!r}; known tables: {known}; "
-            "a file of your own needs the ending .csv"
+            f"{where}: unknown table {shown(name)}; tables with a column {column}: "
+            f"{known or 'none'}; a file of your own needs the ending .csv"
         )
-    return _parse(where, read_text(path))
+    return _parse(where, read_text(paths[name], where))
+
+
+def _columns(path: Path) -> list[str]:
+    return _lines(path.read_text(encoding="utf-8"))[0].split(",")
+
+
+def _lines(text: str) -> list[str]:
+    return [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
 
 
 def _parse(where: str, text: str) -> dict[str, tuple[float, ...]]:
-    lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
+    lines = _lines(text)
     if len(lines) < 2:
         raise PresetError(f"{where}: must have a line of column names and a line of numbers")
     names = [name.strip() for name in lines[0].split(",")]
     if len(set(names)) < len(names):
-        raise PresetError(f"{where}: column names must differ, got {lines[0]!r}")
+        raise PresetError(f"{where}: column names must differ, got {shown(lines[0])}")
     rows = _rows(where, lines[1:], len(names))
     return dict(zip(names, zip(*rows, strict=True), strict=True))
 
@@ -69,6 +81,6 @@ def _rows(where: str, lines: list[str], width: int) -> list[list[float]]:
         except ValueError:
             row = []
         if len(row) != width or not all(map(math.isfinite, row)):
-            raise PresetError(f"{where}: a line must be {width} finite numbers, got {line!r}")
+            raise PresetError(f"{where}: a line must be {width} finite numbers, got {shown(line)}")
         rows.append(row)
     return rows

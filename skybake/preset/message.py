@@ -1,0 +1,17 @@
+"""How messages repeat what the user gave."""
+
+from __future__ import annotations
+
+from typing import Any
+
+MAX_SHOWN = 60
+"""Characters of a value that a message repeats."""
+
+
+def shown(value: Any) -> str:
+    """Value for a message: one line, cut where it gets long."""
+    try:
+        text = repr(value)
+    except ValueError:  # Python refuses to print an integer of more than 4300 digits.
+        return "an integer of thousands of digits"
+    return text if len(text) <= MAX_SHOWN else f"{text[:MAX_SHOWN]}..."

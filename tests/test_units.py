@@ -1,0 +1,98 @@
+import math
+import subprocess
+import sys
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from skybake.errors import InputError
+from skybake.units import parse_angle, parse_length
+
+
+@pytest.mark.parametrize(
+    ("text", "radians"),
+    [
+        ("5deg", math.radians(5.0)),
+        ("5", math.radians(5.0)),
+        ("-18 deg", math.radians(-18.0)),
+        ("0.1rad", 0.1),
+        ("30arcmin", math.radians(0.5)),
+        ("960arcsec", math.radians(960.0 / 3600.0)),
+        ("1e-3rad", 1e-3),
+        (" .5deg ", math.radians(0.5)),
+    ],
+)
+def test_an_angle_is_read_in_its_unit_and_in_degrees_without_one(text, radians):
+    assert parse_angle(text) == pytest.approx(radians, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("text", "kilometres"),
+    [
+        ("2km", 2.0),
+        ("400km", 400.0),
+        ("1500m", 1.5),
+        ("12", 0.012),
+        ("30000ft", 9.144),
+        ("1mi", 1.609344),
+        ("-5m", -0.005),
+    ],
+)
+def test_a_length_is_read_in_its_unit_and_in_metres_without_one(text, kilometres):
+    assert parse_length(text) == pytest.approx(kilometres, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", " ", "deg", "5dgr", "5km", "nan", "inf", "-inf", "1e999deg", "5 5", "0x10", "5deg6", "٥"],  # noqa: RUF001
+)
+def test_what_is_no_finite_angle_is_refused_with_the_known_units(text):
+    with pytest.raises(InputError) as caught:
+        parse_angle(text)
+    assert str(caught.value) == (
+        "must be an angle such as 5deg (units: deg, rad, arcmin, arcsec; "
+        f"a bare number is in deg), got {text!r}"
+    )
+
+
+@pytest.mark.parametrize("text", ["2deg", "two km", "nan", "inf", "1e999km", "2,5km", "5 k m"])
+def test_what_is_no_finite_length_is_refused_with_the_known_units(text):
+    with pytest.raises(InputError) as caught:
+        parse_length(text)
+    assert str(caught.value) == (
+        f"must be a length such as 2km (units: m, km, ft, mi; a bare number is in m), got {text!r}"
+    )
+
+
+@given(
+    st.floats(-1e6, 1e6),
+    st.sampled_from([("deg", math.pi / 180), ("rad", 1.0), ("arcmin", math.pi / 10800)]),
+)
+def test_an_angle_survives_being_written_and_read(value, unit):
+    name, radians = unit
+    assert parse_angle(f"{value!r}{name}") == pytest.approx(value * radians, rel=1e-15, abs=0.0)
+
+
+@given(st.floats(-1e9, 1e9), st.sampled_from([("m", 1e-3), ("km", 1.0), ("ft", 0.3048e-3)]))
+def test_a_length_survives_being_written_and_read(value, unit):
+    name, kilometres = unit
+    assert parse_length(f"{value!r} {name}") == pytest.approx(
+        value * kilometres, rel=1e-15, abs=0.0
+    )
+
+
+@given(st.text())
+def test_any_text_gives_a_finite_number_or_one_line(text):
+    try:
+        value = parse_angle(text)
+    except InputError as error:
+        lines = str(error).splitlines()
+    else:
+        lines = [f"{value}"] if math.isfinite(value) else []
+    assert len(lines) == 1
+
+
+def test_units_are_read_without_numpy():
+    code = "import sys, skybake.units; sys.exit('numpy' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
