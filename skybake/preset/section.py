@@ -38,7 +38,7 @@ class Section:
 
     def where(self, key: str = "") -> str:
         """Place of a key (or of this table) for a message."""
-        path = ".".join(part for part in (self._path, key) if part)
+        path = self._dotted(key)
         return f"{self._file}: {path}" if path else self._file
 
     def fail(self, key: str, rule: str) -> NoReturn:
@@ -67,14 +67,13 @@ class Section:
         value = self.raw(key)
         if not isinstance(value, dict):
             self.fail(key, f"must be a table, got {shown(value)}")
-        path = self.where(key).removeprefix(f"{self._file}: ")
-        return Section(self._file, path, value, self.folder)
+        return Section(self._file, self._dotted(key), value, self.folder)
 
     def text(self, key: str, default: Any = MISSING) -> str:
-        """Non-empty string."""
+        """One line of text."""
         value = self.raw(key, default)
-        if not isinstance(value, str) or not value.strip():
-            self.fail(key, f"must be a text, got {shown(value)}")
+        if not isinstance(value, str) or len(value.strip().splitlines()) != 1:
+            self.fail(key, f"must be a line of text, got {shown(value)}")
         return value
 
     def choice(self, key: str, choices: tuple[str, ...], default: Any = MISSING) -> str:
@@ -94,7 +93,7 @@ class Section:
         """Non-empty array of numbers within bounds."""
         values = self.raw(key, default)
         if not isinstance(values, list) or not values:
-            self.fail(key, f"must be an array of numbers, got {values!r}")
+            self.fail(key, f"must be an array of numbers, got {shown(values)}")
         return tuple(self._number(key, value, least, most) for value in values)
 
     def spectrum(
@@ -143,6 +142,9 @@ class Section:
             if key not in self._asked:
                 known = sorted(set(self._asked))
                 self.fail("", f"unknown key {shown(key)}; known keys: {', '.join(known)}")
+
+    def _dotted(self, key: str) -> str:
+        return ".".join(part for part in (self._path, key) if part)
 
     def _number(self, key: str, value: Any, least: float, most: float) -> float:
         # bool is an int to Python, but `optical_depth = true` is a slip.

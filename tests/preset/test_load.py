@@ -302,6 +302,13 @@ def test_a_fault_in_a_preset_of_skybake_is_named_without_its_folder(tmp_path, mo
     (package / "presets").mkdir(parents=True)
     (package / "presets" / "ball.toml").write_text("title = 3", encoding="utf-8")
     monkeypatch.setattr("skybake.preset.find._PACKAGE", package)
-    with pytest.raises(PresetError, match=r"^ball\.toml: title: must be a text, got 3$"):
+    with pytest.raises(PresetError, match=r"^ball\.toml: title: must be a line of text, got 3$"):
         load_preset("ball")
     shutil.rmtree(package)
+
+
+def test_the_example_of_the_documentation_loads(tmp_path):
+    document = Path(__file__).resolve().parents[2] / "docs" / "presets.md"
+    example = document.read_text(encoding="utf-8").split("```toml\n")[1].split("```")[0]
+    planet = load_preset(write(tmp_path, text=example))
+    assert [constituent.name for constituent in planet.constituents] == ["air", "dust"]
