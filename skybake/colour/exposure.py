@@ -54,11 +54,14 @@ def luminance_from_units(units: str) -> float:
     return 1.0 if units == "nits" else luminance_from_ev(15.0)
 
 
-_MIDDLE_GREY = 0.18
 _SAMPLES = 256
+_SKY = 0.36
+_HIGHLIGHT = 2.0
 _SUN_FREE = 0.99
+_MOSTLY = 0.95
 _DARK = 0.01
 _NO_LIGHT = 1e-30
+_DARKEST_EV = -20.0
 
 
 def auto_ev(luminance: npt.NDArray[np.floating]) -> float:
@@ -67,20 +70,22 @@ def auto_ev(luminance: npt.NDArray[np.floating]) -> float:
     Parameters
     ----------
     luminance : ndarray of float, shape (row, column)
-        Not negative; an equirect map if it is twice as wide as high, else any image,
-        each pixel of which counts the same. [cd m⁻²]
+        Finite; an equirect map if it is twice as wide as high, else any image, each
+        pixel of which counts the same. [cd m⁻²]
 
     Returns
     -------
     float
-        Exposure value at ISO 100; 0 for a map without light.
+        Exposure value at ISO 100, at least -20; 0 for a map without light.
 
     Notes
     -----
-    The mean of the logarithm over solid angle, brought to middle grey, taken over the
-    hemisphere above unless that is black beside the rest, as it is in space. Only what
-    is brighter than a hundredth of the 99th percentile counts: the percentile leaves
-    the sun out, the threshold leaves out black space and the night side.
+    The mean of log luminance over solid angle is brought to 0.36, a stop above middle
+    grey, as a sky is shown. The mean goes over the hemisphere above, unless that is black
+    beside the rest as it is in space, and over what is brighter than a hundredth of
+    its 99th percentile: the percentile leaves the sun out, the threshold black space and
+    the night side. Then 95 % of the whole map are kept below 2, which the display
+    transforms still tell from white; seen from high up the ground decides by that.
     """
     rows, columns = luminance.shape
     step = max(1, rows // _SAMPLES)
@@ -92,6 +97,7 @@ def auto_ev(luminance: npt.NDArray[np.floating]) -> float:
         above = slice(0, max(1, len(sample) // 2))
     weights = np.broadcast_to(weight[:, None], sample.shape)
 
+    mostly = _weighted_quantile(sample, weights, _MOSTLY)
     bright = _weighted_quantile(sample, weights, _SUN_FREE)
     bright_above = _weighted_quantile(sample[above], weights[above], _SUN_FREE)
     if bright_above >= _DARK * bright:
@@ -99,8 +105,10 @@ def auto_ev(luminance: npt.NDArray[np.floating]) -> float:
     lit = sample >= max(_DARK * bright, _NO_LIGHT)
     if not lit.any():
         return 0.0
-    key = np.average(np.log2(sample[lit]), weights=weights[lit])
-    return float(key - math.log2(_MIDDLE_GREY * luminance_from_ev(0.0)))
+    log_mean = float(np.average(np.log2(sample[lit]), weights=weights[lit]))
+    for_sky = log_mean - math.log2(_SKY)
+    for_highlights = math.log2(max(mostly, _NO_LIGHT) / _HIGHLIGHT)
+    return max(max(for_sky, for_highlights) - math.log2(luminance_from_ev(0.0)), _DARKEST_EV)
 
 
 def _weighted_quantile(

@@ -19,7 +19,9 @@ RADIANCE_EFFICACY = 179.0
 equal energy white, for all light. [lm W⁻¹]"""
 
 _LARGEST = 2.0**126
-_EXPONENT = 0x7F800000
+_EXPONENT_BITS = 0x7F800000
+_HALF_STEP_BITS = 0x8000
+_SMALLEST_STEP = np.float32(2.0**-120)
 
 
 class HdrWriter(ScanlineWriter):
@@ -92,10 +94,17 @@ def round_to_rgbe(values: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
     ndarray of float32, shape (..., 3)
         Within 1/256 of the largest channel.
     """
-    largest = values.max(axis=-1, keepdims=True)
-    power_of_two = (largest.view(np.uint32) & _EXPONENT).view(np.float32)
-    step = np.maximum(power_of_two * np.float32(2.0**-7), np.finfo(np.float32).tiny)
-    rounded: npt.NDArray[np.float32] = np.rint(values / step) * step
+    red, green, blue = values[..., 0], values[..., 1], values[..., 2]
+    largest = np.maximum(np.maximum(red, green), blue)
+    # The exponent is that of the largest after rounding: 255.5 steps become the next power of two.
+    bits = (largest.view(np.uint32) + _HALF_STEP_BITS) & _EXPONENT_BITS
+    power_of_two = bits.view(np.float32)
+    step = np.maximum(power_of_two * np.float32(2.0**-7), _SMALLEST_STEP)
+    rounded = np.empty_like(values)
+    # Channel by channel: numpy is several times slower along an axis of three.
+    for channel in range(3):
+        np.rint(values[..., channel] / step, out=rounded[..., channel])
+        rounded[..., channel] *= step
     return rounded
 
 
@@ -127,18 +136,19 @@ def header_lines(spec: MapSpec) -> bytes:
 def read_header(path: Path) -> dict[str, str]:
     """Variables and comments of a Radiance picture's header by name, as text.
 
-    Factors of repeated EXPOSURE lines are multiplied, as the format has it.
+    Raises
+    ------
+    ValueError
+        If an EXPOSURE is not a number; the factors of several are multiplied.
     """
     found: dict[str, str] = {}
-    exposure = 1.0
     with path.open("rb") as file:
         for raw in iter(lambda: file.readline(1 << 20), b"\n"):
             if not raw:
                 break
             key, equals, value = raw.decode("utf-8", "replace").strip().partition("=")
             if key == "EXPOSURE":
-                exposure *= float(value)
-                value = repr(exposure)
+                value = repr(float(value) * float(found.get(key, "1")))
             if equals:
                 found[key.lstrip("# ")] = value
     return found

@@ -11,7 +11,7 @@ import OpenImageIO
 
 from skybake.errors import InputError
 from skybake.formats.partial import replace_when_whole, write_error
-from skybake.formats.spec import UNDATED, Tagged
+from skybake.formats.spec import Tagged
 
 View = Literal["aces2", "aces1"]
 
@@ -71,7 +71,6 @@ def write_preview(
     spec = OpenImageIO.ImageSpec(shown.shape[1], shown.shape[0], 3, "uint8")
     spec["oiio:ColorSpace"] = "srgb_rec709_display"
     spec["oiio:dither"] = 1
-    spec["DateTime"] = UNDATED
     with replace_when_whole(path) as temporary:
         output = OpenImageIO.ImageOutput.create(str(temporary))
         if output is None:

@@ -62,12 +62,18 @@ def read_image(path: Path) -> tuple[npt.NDArray[np.float32], dict[str, Any]]:
 
 def _radiance_attributes(path: Path) -> dict[str, Any]:
     """Return what a Radiance header says, under OpenEXR's names."""
-    header = read_header(path)
+    try:
+        header = read_header(path)
+        exposure = float(header.get("EXPOSURE", "0"))
+        primaries = tuple(float(v) for v in header.get("PRIMARIES", "").split())
+    except ValueError as error:
+        raise InputError(f"{path}: EXPOSURE and PRIMARIES must be numbers, got {error}") from error
     attributes: dict[str, Any] = dict(header)
-    if "EXPOSURE" in header:
-        attributes["whiteLuminance"] = RADIANCE_EFFICACY / float(header["EXPOSURE"])
-    if "PRIMARIES" in header:
-        attributes["chromaticities"] = tuple(float(v) for v in header["PRIMARIES"].split())
+    # Some programs write EXPOSURE=0 where they mean that they do not know it.
+    if exposure > 0.0:
+        attributes["whiteLuminance"] = RADIANCE_EFFICACY / exposure
+    if primaries:
+        attributes["chromaticities"] = primaries
     return attributes
 
 
