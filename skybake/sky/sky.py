@@ -202,7 +202,7 @@ class Sky:
         if self.method == "march":
             return RayLight(*march_rays(self.medium, r, mu, mu_s, nu))
         return trace_rays(
-            self.medium, self._shells, self._columns, self._multiple, r, mu, mu_s, nu
+            self.medium, self._shells, self.columns, self._multiple, r, mu, mu_s, nu
         )
 
     @cached_property
@@ -210,9 +210,10 @@ class Sky:
         return altitude_shells(self.medium)
 
     @cached_property
-    def _columns(self) -> Array:
+    def columns(self) -> Array:
+        """The atmosphere's table of `build_columns`."""
         return build_columns(self.medium)
 
     @cached_property
     def _multiple(self) -> MultiScatter:
-        return build_multiscatter(self.medium, self._columns)
+        return build_multiscatter(self.medium, self.columns)

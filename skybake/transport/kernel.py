@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import threading
 import warnings
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -84,10 +85,11 @@ def run_rows(rows: int, work: Callable[[int, int], object], *, chunk: int = 1) -
     """Call ``work(first, last)`` over chunks of ``range(rows)`` on all threads.
 
     Chunks are handed out as threads become free, since rows differ in cost.
-    Each call must write to its own rows only.
+    Each call must write to its own rows only. A call from one of the threads
+    itself runs there alone: waiting for the others could wait forever.
     """
     starts = range(0, rows, chunk)
-    if thread_count() == 1 or len(starts) == 1:
+    if thread_count() == 1 or len(starts) == 1 or getattr(_here, "is_worker", False):
         for first in starts:
             work(first, min(first + chunk, rows))
         return
@@ -103,7 +105,14 @@ def run_rows(rows: int, work: Callable[[int, int], object], *, chunk: int = 1) -
 
 @cache
 def _pool() -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(thread_count(), thread_name_prefix="skybake")
+    return ThreadPoolExecutor(thread_count(), initializer=_mark_worker)
+
+
+_here = threading.local()
+
+
+def _mark_worker() -> None:
+    _here.is_worker = True
 
 
 @cache

@@ -1,0 +1,113 @@
+"""A sky and its sun in the colour space and the scale of a map."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+
+import numpy as np
+
+from skybake.bake.settings import MapSettings
+from skybake.colour.observer import xyz_weights
+from skybake.colour.space import find_colour_space, luminance_weights, rgb_from_xyz
+from skybake.optics.medium import Array
+from skybake.optics.spectrum import star_spectrum
+from skybake.preset import Planet
+from skybake.projection.equirect import Cells
+from skybake.sky.sky import WAVELENGTHS, Sky
+from skybake.sky.sun import SunDisc
+from skybake.sky.view import SkyView, fill_directions
+from skybake.transport.kernel import run_rows
+
+PROBE_ZENITHS = 192
+PROBE_AZIMUTHS = 256
+
+
+class Scene:
+    """What a map shows, ready to be evaluated at pixels.
+
+    Parameters
+    ----------
+    planet : Planet
+        The world.
+    settings : MapSettings
+        The observer, the sun, the colour space and the scale.
+    """
+
+    def __init__(self, planet: Planet, settings: MapSettings) -> None:
+        self.planet = planet
+        self.settings = settings
+        self.sky = Sky(
+            planet,
+            settings.sun_elevation,
+            settings.altitude,
+            sun_azimuth=settings.sun_azimuth,
+            method=settings.method,
+        )
+        self.sun = SunDisc(self.sky)
+        self.sun_zenith = math.pi / 2.0 - settings.sun_elevation
+
+    @cached_property
+    def xyz_weights(self) -> Array:
+        """XYZ [cd m⁻²] is the radiance per unit irradiance times these, (wavelength, 3)."""
+        star = star_spectrum(self.planet.star)
+        if self.planet.rendering == "spectral":
+            return xyz_weights(self.sky.wavelengths, *star)
+        # Three wavelengths stand for R, G and B, and the sun for white of its illuminance.
+        illuminance = xyz_weights(WAVELENGTHS, *star)[:, 1].sum()
+        xyz_from_rgb = np.linalg.inv(rgb_from_xyz(find_colour_space("lin_rec709")))
+        return illuminance * xyz_from_rgb.T
+
+    @cached_property
+    def rgb_weights(self) -> Array:
+        """Pixel values are the radiance per unit irradiance times these, (wavelength, 3)."""
+        to_rgb = rgb_from_xyz(self.settings.space).T
+        weights: Array = self.xyz_weights @ to_rgb / self.settings.white_luminance
+        return weights
+
+    @cached_property
+    def view(self) -> SkyView:
+        """The sky as a table of pixel values."""
+        return self.sky.view(self.rgb_weights)
+
+    @property
+    def luminance(self) -> Array:
+        """Luminance [cd m⁻²] of pixel values is their product with these, (3,)."""
+        return self.settings.white_luminance * luminance_weights(self.settings.space)
+
+    def disc_flux(self, cells: Cells) -> Array:
+        """Pixel value times solid angle that each cell of the disc adds, (cell, 3). [sr]"""
+        if cells.distance.size == 0:
+            return np.zeros((0, 3))
+        light = self.sun.radiance_per_irradiance(cells.zenith, cells.distance)
+        return (light * cells.solid_angle[:, None]) @ self.rgb_weights
+
+    def sun_illuminance(self) -> tuple[float, float]:
+        """Illuminance by the sun's disc, facing it and on the horizontal. [lx]"""
+        normal, horizontal = self.sun.irradiance_per_irradiance()
+        luminous = self.xyz_weights[:, 1]
+        return float(normal @ luminous), float(horizontal @ luminous)
+
+    def sky_illuminance(self) -> float:
+        """Illuminance of a horizontal plane by the sky without the sun's disc. [lx]"""
+        node, weight = np.polynomial.legendre.leggauss(PROBE_ZENITHS)
+        zenith = math.pi / 4.0 * (node + 1.0)
+        azimuth = math.pi * (np.arange(PROBE_AZIMUTHS) + 0.5) / PROBE_AZIMUTHS
+        pixels = self.evaluate(zenith[:, None], azimuth[None], 1e-9)
+        luminance = pixels.astype(float).mean(axis=1) @ self.luminance
+        flux = math.pi / 4.0 * weight * np.sin(zenith) * np.cos(zenith)
+        return float(2.0 * math.pi * (flux * luminance).sum())
+
+    def evaluate(self, zenith: Array, azimuth: Array, height: float) -> np.ndarray:
+        """Pixel values of the sky, see `fill_directions`, shape (row, column, 3)."""
+        rows, columns = np.broadcast_shapes(zenith.shape, azimuth.shape)
+        out = np.empty((rows, columns, 3), np.float32)
+        view = self.view
+        run_rows(
+            rows,
+            lambda first, last: fill_directions(
+                view, zenith, azimuth, height, first, last, out[first:last]
+            ),
+            chunk=16,
+        )
+        return out

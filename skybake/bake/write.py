@@ -1,0 +1,235 @@
+"""Bakes a map into files: band after band, each computed while the last is written."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from skybake.bake.panel import ColumnPanel, CrossPanel, EquirectPanel, FacePanel, Panel
+from skybake.bake.scene import Scene
+from skybake.bake.settings import MapSettings
+from skybake.bake.preview import preview_pixels
+from skybake.formats.spec import MapSpec
+from skybake.formats.writer import open_map
+from skybake.preset import Planet, load_preset
+from skybake.projection.cubemap import FACES
+from skybake.projection.equirect import column_bearings, row_zeniths
+
+BAND_ROWS = 128
+PREVIEW_WIDTH = 1024
+HALF_LARGEST = 60000.0
+HALF_SMALLEST = 2.0**-14
+SURVEY_HEIGHT = 256
+
+Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True)
+class Baked:
+    """What was baked.
+
+    Attributes
+    ----------
+    files : tuple of Path
+        The map, one file or six.
+    sun_direction : tuple of float
+        Unit vector toward the sun; +Y up, -Z north, +X east.
+    direct_normal_illuminance, direct_illuminance : float
+        By the sun's disc, on a plane that faces it and on a horizontal one. [lx]
+    sky_illuminance : float
+        By the sky, on a horizontal plane. [lx]
+    white_luminance : float
+        Luminance that a pixel value of 1 stands for. [cd m⁻²]
+    pixel : str
+        Type of the stored values.
+    preview : Path or None
+        The display-referred picture.
+    preview_ev : float or None
+        Exposure value of the picture.
+    clamped : int
+        Negative values that a format without a sign lost.
+    """
+
+    files: tuple[Path, ...]
+    sun_direction: tuple[float, float, float]
+    direct_normal_illuminance: float
+    direct_illuminance: float
+    sky_illuminance: float
+    white_luminance: float
+    pixel: str
+    preview: Path | None
+    preview_ev: float | None
+    clamped: int
+
+
+def bake(
+    preset: Planet | str | Path = "earth",
+    output: Path | str | None = None,
+    settings: MapSettings | None = None,
+    *,
+    preview: Path | str | None = None,
+    preview_ev: float | None = None,
+    preview_view: str = "aces2",
+    progress: Progress | None = None,
+) -> Baked:
+    """Bake one sky map.
+
+    Parameters
+    ----------
+    preset : Planet, str or Path
+        A loaded planet, a preset's name, or the path of a preset's file.
+    output : Path or str, optional
+        ``.exr`` or ``.hdr``; default a name that says what it is, in the current
+        folder. Six faces replace ``{face}`` in it, or add ``_px`` and so on.
+    settings : MapSettings, optional
+        Sun, observer, map, colour and pixels.
+    preview : Path or str, optional
+        Also write a display-referred PNG here.
+    preview_ev : float, optional
+        Its exposure value; by default chosen from the picture.
+    preview_view : {"aces2", "aces1"}, optional
+        Its rendering.
+    progress : callable, optional
+        Called with the share that is done, from 0 to 1.
+
+    Returns
+    -------
+    Baked
+        The files and what light they hold.
+
+    Raises
+    ------
+    SkybakeError
+        If the preset, a setting or the target cannot be used; no file is left then.
+    """
+    settings = settings or MapSettings()
+    planet = preset if isinstance(preset, Planet) else load_preset(preset)
+    target = Path(output) if output is not None else default_path(planet, settings)
+    scene = Scene(planet, settings)
+    normal, horizontal = scene.sun_illuminance()
+    sky_illuminance = scene.sky_illuminance()
+    panels = _panels(scene, target)
+    pixel = _pixel(scene, settings, max(panel.peak for panel in panels.values()))
+    attributes = {
+        "skybake:sunDirection": tuple(scene.sky.sun_direction.tolist()),
+        "skybake:directNormalIlluminance": normal,
+        "skybake:directIlluminance": horizontal,
+        "skybake:skyIlluminance": sky_illuminance,
+        "skybake:preset": planet.name,
+        "skybake:recipe": json.dumps(
+            {"map": settings.recipe(), "preset": planet.recipe}, sort_keys=True
+        ),
+    }
+    specs = {
+        path: MapSpec(
+            panel.width,
+            panel.height,
+            settings.space,
+            settings.white_luminance,
+            pixel=pixel,
+            compression=settings.compression,
+            envmap=panel.envmap,
+            attributes=attributes,
+        )
+        for path, panel in panels.items()
+    }
+    clamped = _write(panels, specs, progress)
+    if preview is not None:
+        preview = Path(preview)
+        preview_ev = _write_preview(scene, preview, preview_ev, preview_view)
+    return Baked(
+        files=tuple(panels),
+        sun_direction=attributes["skybake:sunDirection"],
+        direct_normal_illuminance=normal,
+        direct_illuminance=horizontal,
+        sky_illuminance=sky_illuminance,
+        white_luminance=settings.white_luminance,
+        pixel=pixel if target.suffix.lower() == ".exr" else "rgbe",
+        preview=preview,
+        preview_ev=preview_ev,
+        clamped=clamped,
+    )
+
+
+def default_path(planet: Planet, settings: MapSettings) -> Path:
+    """Name that says what a map is, as ``mars_sun+05.00deg_equirect.exr``."""
+    elevation = f"{math.degrees(settings.sun_elevation):+06.2f}deg"
+    altitude = f"_{settings.altitude * 1e3:g}m" if settings.altitude > 0.0 else ""
+    return Path(f"{planet.name}_sun{elevation}{altitude}_{settings.projection}.exr")
+
+
+def face_path(target: Path, face: str) -> Path:
+    """Name of a face's file."""
+    if "{face}" in target.name:
+        return target.with_name(target.name.replace("{face}", face))
+    return target.with_name(f"{target.stem}_{face}{target.suffix}")
+
+
+def _panels(scene: Scene, target: Path) -> dict[Path, Panel]:
+    settings = scene.settings
+    if settings.projection == "equirect":
+        return {target: EquirectPanel(scene, settings.width)}
+    if settings.cube_layout == "cross":
+        return {target: CrossPanel(scene, settings.width)}
+    if settings.cube_layout == "exr":
+        return {target: ColumnPanel(scene, settings.width)}
+    return {face_path(target, face): FacePanel(scene, face, settings.width) for face in FACES}
+
+
+def _pixel(scene: Scene, settings: MapSettings, peak: float) -> str:
+    """Type in which no value overflows and no sky value loses bits."""
+    if settings.pixel != "auto":
+        return settings.pixel
+    if settings.sun_disc == "only":
+        return "half" if peak < HALF_LARGEST else "float"
+    zenith = row_zeniths(SURVEY_HEIGHT)[:, None]
+    azimuth = column_bearings(2 * SURVEY_HEIGHT)[None]
+    survey = scene.evaluate(zenith, azimuth, math.pi / SURVEY_HEIGHT)
+    toward_sun = scene.evaluate(np.array([[scene.sun_zenith]]), np.zeros((1, 1)), 1e-9)
+    luminance = survey @ (scene.luminance / settings.white_luminance)
+    lit = luminance[luminance > 0.0]
+    largest = 1.1 * max(np.abs(survey).max(), np.abs(toward_sun).max()) + peak
+    # The survey's texels are coarser than the map's, so the bounds keep a margin.
+    smallest = 0.5 * float(lit.min()) if lit.size else 1.0
+    return "half" if largest < HALF_LARGEST and smallest >= HALF_SMALLEST else "float"
+
+
+def _write(
+    panels: dict[Path, Panel], specs: dict[Path, MapSpec], progress: Progress | None
+) -> int:
+    """Write all files or none; returns how many negative values were lost."""
+    bands = [
+        (path, first, min(first + BAND_ROWS, panel.height))
+        for path, panel in panels.items()
+        for first in range(0, panel.height, BAND_ROWS)
+    ]
+    with ExitStack() as stack, ThreadPoolExecutor(1) as ahead:
+        writers = {path: stack.enter_context(open_map(path, specs[path])) for path in panels}
+        pending = ahead.submit(panels[bands[0][0]].rows, *bands[0][1:])
+        for i, (path, first, last) in enumerate(bands):
+            rows = pending.result()
+            if i + 1 < len(bands):
+                following, *span = bands[i + 1]
+                pending = ahead.submit(panels[following].rows, *span)
+            writers[path].write_rows(first, last, rows)
+            if progress is not None:
+                progress((i + 1) / len(bands))
+    return sum(writer.clamped for writer in writers.values())
+
+
+def _write_preview(scene: Scene, path: Path, ev: float | None, view: str) -> float:
+    """Write a small display-referred picture of a scene and return its exposure value."""
+    if scene.settings.projection == "equirect":
+        panel: Panel = EquirectPanel(scene, min(scene.settings.width, PREVIEW_WIDTH))
+    else:
+        panel = CrossPanel(scene, min(scene.settings.width, PREVIEW_WIDTH // 4))
+    pixels = panel.rows(0, panel.height)
+    settings = scene.settings
+    return preview_pixels(path, pixels, settings.space, settings.white_luminance, ev=ev, view=view)

@@ -1,0 +1,1 @@
+"""Pixels to directions and back: no physics, only where a map looks."""

@@ -1,0 +1,335 @@
+"""Paths followed backward from the observer, each vertex lit by the sun."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from skybake.reference.directions import (
+    advance,
+    dot,
+    draw_cosine,
+    draw_lobe,
+    phase_and_lobe,
+    scattering_at,
+    uniform,
+)
+from skybake.reference.guide import draw_guided, guided_density, look_up
+from skybake.reference.rays import (
+    altitude_on_ray,
+    new_cuts,
+    node_value,
+    place_at_depth,
+    shell_of,
+    trace,
+    transmittance_to_space,
+)
+from skybake.transport.kernel import kernel
+
+SEGMENTS_PER_STRETCH = 16
+TOWARD_SUN = 0.3
+"""Share of a path's first turns drawn around the sun: an aureole is never met by chance alone."""
+
+GUIDED = 0.35
+"""Share of a path's first turns drawn by the guide, such as toward the glow of twilight."""
+
+SURVIVAL = 0.3
+"""Paths that promise less than this, relative to their first vertex, play Russian roulette."""
+
+
+@kernel
+def new_stretches(air):
+    """Room for `weigh_stretches`."""
+    return np.empty(2 * len(air.altitude) // SEGMENTS_PER_STRETCH + 4)
+
+
+@kernel
+def weigh_stretches(air, guide, ray, h, mu_s, nu, lit, cumulative):
+    """Sum up how much light each stretch of the ray promises, the ground last.
+
+    Parameters
+    ----------
+    lit : bool
+        Whether sunlight that scatters here counts, or only what scattered before.
+
+    Returns
+    -------
+    stretches : int
+        Number of entries, the ground included if the ray meets it.
+    """
+    cuts = ray.cuts
+    r_start = air.r_bottom + h
+    total = 0.0
+    count = 0
+    first = 0
+    promise = _promise(air, guide, ray, 0, r_start, mu_s, nu, lit)
+    while first < ray.segments:
+        last = min(first + SEGMENTS_PER_STRETCH, ray.segments)
+        promise_after = _promise(air, guide, ray, last, r_start, mu_s, nu, lit)
+        share = math.exp(-cuts.depth[first]) * -math.expm1(cuts.depth[first] - cuts.depth[last])
+        total += share * 0.5 * (promise + promise_after)
+        cumulative[count] = total
+        count += 1
+        promise = promise_after
+        first = last
+    if ray.reaches_ground:
+        ground_mu_s = _mu_s_at_cut(air, ray, ray.segments, r_start, mu_s, nu)
+        light = look_up(guide, guide.ambient, 0.0, ground_mu_s)
+        if lit:
+            # Lambert's 1/pi against the mean phase function, 1/(4 pi).
+            light += 4.0 * max(0.0, ground_mu_s) * look_up(guide, guide.direct, 0.0, ground_mu_s)
+        total += math.exp(-cuts.depth[ray.segments]) * air.albedo * light
+        cumulative[count] = total
+        count += 1
+    return count
+
+
+@kernel
+def _mu_s_at_cut(air, ray, i, r_start, mu_s, nu):
+    return (r_start * mu_s + (ray.cuts.s[i] - ray.start) * nu) / (air.r_bottom + ray.cuts.h[i])
+
+
+@kernel
+def _promise(air, guide, ray, i, r_start, mu_s, nu, lit):
+    h = ray.cuts.h[i]
+    mu_s_there = _mu_s_at_cut(air, ray, i, r_start, mu_s, nu)
+    light = look_up(guide, guide.ambient, h, mu_s_there)
+    if lit:
+        light += look_up(guide, guide.direct, h, mu_s_there)
+    return light
+
+
+@kernel
+def draw_vertex(air, ray, stretches, cumulative, u, state):
+    """Where the ray scatters or meets the ground, and the weight of having drawn that.
+
+    A stretch is drawn by what it promises, the place in it as an unguided
+    photon would be absorbed or scattered, given that it is there.
+
+    Returns
+    -------
+    weight : float
+        Transmittance x extinction x length over the probability drawn with.
+    s, h : float
+    shell : int
+        -1 at the ground.
+    """
+    cuts = ray.cuts
+    total = cumulative[stretches - 1]
+    b = min(np.searchsorted(cumulative[:stretches], u * total, side="right"), stretches - 1)
+    probability = (cumulative[b] - (cumulative[b - 1] if b > 0 else 0.0)) / total
+    if probability <= 0.0:
+        return 0.0, 0.0, 0.0, 0
+    if ray.reaches_ground and b == stretches - 1:
+        depth = cuts.depth[ray.segments]
+        return math.exp(-depth) / probability, cuts.s[ray.segments], 0.0, -1
+    first = b * SEGMENTS_PER_STRETCH
+    last = min(first + SEGMENTS_PER_STRETCH, ray.segments)
+    absorbed = -math.expm1(cuts.depth[first] - cuts.depth[last])
+    target = cuts.depth[first] - math.log1p(-uniform(state) * absorbed)
+    i = first + np.searchsorted(cuts.depth[first + 1 : last], target)
+    s = place_at_depth(
+        air,
+        ray.h_tangent,
+        cuts.shell[i],
+        cuts.s[i],
+        cuts.h[i],
+        cuts.s[i + 1],
+        cuts.h[i + 1],
+        target - cuts.depth[i],
+    )
+    h = max(0.0, altitude_on_ray(air.r_bottom, ray.h_tangent, s))
+    weight = math.exp(-cuts.depth[first]) * absorbed / probability
+    return weight, s, h, cuts.shell[i]
+
+
+@kernel
+def follow(
+    air, guide, sun, ray, stretches, cumulative, u, up, h, direction, first, last, scratch, state
+):
+    """Radiance that one path brings, orders `first` to `last`, per unit solar irradiance.
+
+    Parameters
+    ----------
+    ray, stretches, cumulative
+        The path's first ray, from `up`, `h` along `direction`.
+    u : float
+        Random number that chooses the first stretch.
+    scratch : tuple
+        Cuts, stretches and coefficients for the rays that follow.
+    """
+    cuts, later_cumulative, each = scratch
+    radiance = 0.0
+    weight = 1.0
+    promised = 0.0
+    order = 1
+    while True:
+        if stretches == 0 or cumulative[stretches - 1] <= 0.0:
+            return radiance
+        step_weight, s, h_vertex, shell = draw_vertex(air, ray, stretches, cumulative, u, state)
+        weight *= step_weight
+        up = advance(up, air.r_bottom + h, direction, s - ray.start)
+        h = h_vertex
+        mu_s = dot(up, sun)
+        at_ground = shell < 0
+        if at_ground:
+            weight *= air.albedo
+            total = scattering_at(air, 0, 0.0, each)
+        else:
+            total = scattering_at(air, shell, h, each)
+            if total <= 0.0:
+                return radiance
+            weight *= total / node_value(air.altitude, air.extinction, shell, h)
+        if weight <= 0.0:
+            return radiance
+        if order >= first:
+            radiance += weight * _sunlight(air, each, total, h, mu_s, direction, sun, at_ground)
+        if order >= last:
+            return radiance
+        promise = weight * look_up(guide, guide.ambient, h, mu_s)
+        if order == 1:
+            promised = promise
+        survival = min(1.0, promise / (SURVIVAL * promised))
+        if survival < 1.0:
+            if uniform(state) >= survival:
+                return radiance
+            weight /= survival
+        direction, step_weight = turn(
+            air, guide, each, total, h, up, direction, sun, at_ground, order, state
+        )
+        if step_weight <= 0.0:
+            return radiance
+        weight *= step_weight
+        mu = dot(up, direction)
+        ray = trace(air, h, mu, cuts)
+        cumulative = later_cumulative
+        stretches = weigh_stretches(
+            air, guide, ray, h, mu_s, dot(direction, sun), order + 1 >= first, cumulative
+        )
+        u = uniform(state)
+        order += 1
+
+
+@kernel
+def _sunlight(air, each, total, h, mu_s, direction, sun, at_ground):
+    """Sunlight that a vertex sends back along `direction`, per unit of what it scatters."""
+    if at_ground:
+        toward_observer = max(0.0, mu_s) / math.pi
+    else:
+        toward_observer, _ = phase_and_lobe(air, each, total, direction, sun)
+    if toward_observer <= 0.0:
+        return 0.0
+    return toward_observer * transmittance_to_space(air, h, mu_s)
+
+
+@kernel
+def turn(air, guide, each, total, h, up, direction, sun, at_ground, order, state):
+    """Next direction of a path, drawn around the last one or around the sun, and its weight."""
+    # A long path whose every turn were drawn so would multiply weights up to 1 / (1 - shares).
+    toward_sun = TOWARD_SUN / order if total > 0.0 else 0.0
+    guided = GUIDED / order
+    mu_s = dot(up, sun)
+    pick = uniform(state)
+    if pick < toward_sun:
+        turned = draw_lobe(air, each, total, sun, state)
+    elif pick < toward_sun + guided:
+        turned = draw_guided(guide, h, mu_s, up, sun, state)
+    elif at_ground:
+        turned = draw_cosine(up, 1.0, state)
+    else:
+        turned = draw_lobe(air, each, total, direction, state)
+    if at_ground:
+        wanted = max(0.0, dot(up, turned)) / math.pi
+        lobe = wanted
+    else:
+        wanted, lobe = phase_and_lobe(air, each, total, direction, turned)
+    density = (1.0 - toward_sun - guided) * lobe
+    density += guided * guided_density(guide, h, mu_s, up, sun, turned)
+    if toward_sun > 0.0:
+        _, sun_lobe = phase_and_lobe(air, each, total, turned, sun)
+        density += toward_sun * sun_lobe
+    return turned, wanted / density if density > 0.0 else 0.0
+
+
+@kernel
+def mean_radiance(air, guide, sun, h, direction, first, last, samples, seed):
+    """Mean over `samples` paths from altitude `h` under the vertical (0, 0, 1)."""
+    state = np.array([seed], dtype=np.uint64)
+    up = (0.0, 0.0, 1.0)
+    scratch = (new_cuts(air), new_stretches(air), np.empty(len(air.scattering)))
+    ray = trace(air, h, direction[2], new_cuts(air))
+    cumulative = new_stretches(air)
+    stretches = weigh_stretches(
+        air, guide, ray, h, sun[2], dot(direction, sun), first <= 1, cumulative
+    )
+    total = 0.0
+    for i in range(samples):
+        u = (i + uniform(state)) / samples
+        total += follow(
+            air,
+            guide,
+            sun,
+            ray,
+            stretches,
+            cumulative,
+            u,
+            up,
+            h,
+            direction,
+            first,
+            last,
+            scratch,
+            state,
+        )
+    return total / samples
+
+
+@kernel
+def mean_irradiance(air, guide, sun, h, facing, samples, seed):
+    """Mean diffuse irradiance on a horizontal plane over `samples` paths.
+
+    Parameters
+    ----------
+    facing : float
+        1 for light from above, -1 for light from below.
+    """
+    state = np.array([seed], dtype=np.uint64)
+    up = (0.0, 0.0, 1.0)
+    normal = (0.0, 0.0, facing)
+    each = np.empty(len(air.scattering))
+    scratch = (new_cuts(air), new_stretches(air), each)
+    first_cuts = new_cuts(air)
+    cumulative = new_stretches(air)
+    top = air.altitude[-1]
+    coefficients = np.zeros(len(air.scattering))
+    scattering = 0.0
+    # Outside, all light comes from the cone that the atmosphere fills.
+    cone = 1.0
+    if h < top:
+        scattering = scattering_at(air, shell_of(air.altitude, h), h, coefficients)
+    else:
+        cone = ((air.r_bottom + top) / (air.r_bottom + h)) ** 2
+    around_sun = 0.5 if scattering > 0.0 and facing * sun[2] > 0.0 else 0.0
+    total = 0.0
+    for _ in range(samples):
+        if uniform(state) < around_sun:
+            direction = draw_lobe(air, coefficients, scattering, sun, state)
+        else:
+            direction = draw_cosine(normal, cone, state)
+        cosine = dot(direction, normal)
+        if cosine <= 0.0:
+            continue
+        density = (1.0 - around_sun) * cosine / (math.pi * cone)
+        if around_sun > 0.0:
+            _, lobe = phase_and_lobe(air, coefficients, scattering, direction, sun)
+            density += around_sun * lobe
+        ray = trace(air, h, direction[2], first_cuts)
+        stretches = weigh_stretches(
+            air, guide, ray, h, sun[2], dot(direction, sun), True, cumulative
+        )
+        total += (cosine / density) * follow(
+            air, guide, sun, ray, stretches, cumulative, uniform(state), up, h, direction,
+            1, np.iinfo(np.int64).max, scratch, state,
+        )  # fmt: skip
+    return total / samples
