@@ -39,18 +39,19 @@ def replace_when_whole(path: Path) -> Iterator[Path]:
     temporary = target.with_name(f".skybake-{os.getpid()}-{secrets.token_hex(4)}{target.suffix}")
     try:
         _check(path, target)
-        yield temporary
-        if target.exists():
-            shutil.copymode(target, temporary)
-        with temporary.open("rb") as file:
-            os.fsync(file.fileno())
-        temporary.replace(target)
+        try:
+            yield temporary
+            if target.exists():
+                shutil.copymode(target, temporary)
+            with temporary.open("rb") as file:
+                os.fsync(file.fileno())
+            temporary.replace(target)
+        finally:
+            temporary.unlink(missing_ok=True)
     except OutputError:
         raise
     except OSError as error:
-        raise OutputError(f"{path}: must be writable, got {error.strerror}") from error
-    finally:
-        temporary.unlink(missing_ok=True)
+        raise OutputError(f"{path}: must be writable, got {error.strerror or error}") from error
 
 
 def write_error(path: Path, temporary: Path, message: str) -> OutputError:

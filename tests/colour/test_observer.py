@@ -30,7 +30,8 @@ def test_the_table_cannot_be_changed_by_a_caller():
 
 def test_a_constant_spectrum_has_the_xyz_of_the_star_by_colour_science():
     observer = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"]
-    expected = colour.colorimetry.sd_to_XYZ_integration(
+    # In its domain of 1, colour-science returns hundredths of what k asks for.
+    expected = 100.0 * colour.colorimetry.sd_to_XYZ_integration(
         np.interp(observer.wavelengths, *SUN),
         observer,
         colour.sd_ones(observer.shape),
@@ -42,8 +43,8 @@ def test_a_constant_spectrum_has_the_xyz_of_the_star_by_colour_science():
 
 
 def test_the_sun_lights_the_top_of_the_air_with_133_kilolux():
-    """Darula, Kittler, Gueymard (2005) find 133.1 to 133.8 klx for solar constants of 1353-1367."""
-    assert xyz_weights(NODES, *SUN)[:, 1].sum() == pytest.approx(133.4e3, rel=0.01)
+    """Darula, Kittler and Gueymard (2005) give 133.1 to 133.8 klx."""
+    assert 133.05e3 < xyz_weights(NODES, *SUN)[:, 1].sum() < 133.85e3
 
 
 def test_a_spectrum_linear_between_the_nodes_is_integrated_exactly():
