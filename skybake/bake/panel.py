@@ -64,9 +64,7 @@ class EquirectPanel(Panel):
 
     def rows(self, first: int, last: int) -> Pixels:
         """Compute the rows first..last."""
-        pixels = _sky(
-            self._scene, self._zenith[first:last], self._azimuth, math.pi / self.height
-        )
+        pixels = _sky(self._scene, self._zenith[first:last], self._azimuth, math.pi / self.height)
         return _finish(self._scene, pixels, self._disc, first)
 
 
@@ -172,7 +170,9 @@ class _Disc:
         begin = max(first, self.first)
         end = min(first + len(pixels), self.first + len(self.pixels))
         if begin < end:
-            pixels[begin - first : end - first] += self.pixels[begin - self.first : end - self.first]
+            pixels[begin - first : end - first] += self.pixels[
+                begin - self.first : end - self.first
+            ]
 
 
 def _sky(scene: Scene, zenith: np.ndarray, azimuth: np.ndarray, height: float) -> Pixels:

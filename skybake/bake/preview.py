@@ -64,8 +64,6 @@ def preview_file(
     """
     pixels, attributes = read_image(source)
     chromaticities: Any = attributes.get("chromaticities")
-    space = colour_space_from_tags(
-        str(source), attributes.get("colorInteropID"), chromaticities
-    )
+    space = colour_space_from_tags(str(source), attributes.get("colorInteropID"), chromaticities)
     white = float(attributes.get("whiteLuminance", UNKNOWN_WHITE))
     return preview_pixels(path, pixels, space, white, ev=ev, view=view)

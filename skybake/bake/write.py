@@ -201,9 +201,7 @@ def _pixel(scene: Scene, settings: MapSettings, peak: float) -> str:
     return "half" if largest < HALF_LARGEST and smallest >= HALF_SMALLEST else "float"
 
 
-def _write(
-    panels: dict[Path, Panel], specs: dict[Path, MapSpec], progress: Progress | None
-) -> int:
+def _write(panels: dict[Path, Panel], specs: dict[Path, MapSpec], progress: Progress | None) -> int:
     """Write all files or none; returns how many negative values were lost."""
     bands = [
         (path, first, min(first + BAND_ROWS, panel.height))

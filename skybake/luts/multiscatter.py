@@ -94,9 +94,7 @@ def add_multiple_scattering(medium, table, r, mu_s, nu, samples, count, out):
         i = min(int(x), altitudes - 2)
         u = x - i
         mu_s_here = (r * mu_s + samples.distance[n] * nu) / samples.radius[n]
-        j, a, b, c, d = _cubic_weights(
-            unit_from_mu_s(table.mu_s_min, mu_s_here) * (size - 1), size
-        )
+        j, a, b, c, d = _cubic_weights(unit_from_mu_s(table.mu_s_min, mu_s_here) * (size - 1), size)
         for k in range(wavelengths):
             scattering[k] = 0.0
         for q in range(samples.density.shape[1]):

@@ -68,9 +68,7 @@ def trace_rays(
     meets the planet's shadow, so rays are best ordered by direction first.
     """
     constituents, wavelengths = medium.extinction.shape
-    light = RayLight(
-        np.zeros((r.size, constituents, wavelengths)), np.zeros((r.size, wavelengths))
-    )
+    light = RayLight(np.zeros((r.size, constituents, wavelengths)), np.zeros((r.size, wavelengths)))
     rays = np.stack([r, mu, mu_s, nu], axis=1)
 
     def work(first: int, last: int) -> None:

@@ -109,9 +109,12 @@ def disc_cells(width: int, height: int, zenith: float, bearing: float, radius: f
     sub_column = column_step * (column_last - column_first) / columns.size
     size = 2.0 * np.sin(theta) * math.sin(0.5 * sub_row) * sub_column
     row, column = (grid.ravel() for grid in np.meshgrid(rows, columns, indexing="ij"))
-    half_sine_squared = np.sin(0.5 * (row * row_step - zenith)) ** 2 + np.sin(
-        row * row_step
-    ) * math.sin(zenith) * np.sin(0.5 * (column * column_step - bearing)) ** 2
+    half_sine_squared = (
+        np.sin(0.5 * (row * row_step - zenith)) ** 2
+        + np.sin(row * row_step)
+        * math.sin(zenith)
+        * np.sin(0.5 * (column * column_step - bearing)) ** 2
+    )
     distance = 2.0 * np.arcsin(np.minimum(np.sqrt(half_sine_squared), 1.0))
     inside = distance < radius
     row, column, distance = row[inside], column[inside], distance[inside]

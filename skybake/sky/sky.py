@@ -32,8 +32,8 @@ METHODS = ("hillaire", "march")
 WAVELENGTHS = np.linspace(380.0, 720.0, 16)
 """Default sampling of the visible spectrum; radiance is taken as linear between. [nm]"""
 
-LOWEST_EYE = 1e-5
-"""Altitude of an observer on the ground: one centimetre, so that a horizon exists. [km]"""
+LOWEST_EYE = 1e-8
+"""Altitude of an observer on the ground: ten micrometres, so that a horizon exists. [km]"""
 
 TWILIGHT_ELEVATION = math.radians(2.0)
 
@@ -201,9 +201,7 @@ class Sky:
         nu = np.clip(nu, -1.0, 1.0)
         if self.method == "march":
             return RayLight(*march_rays(self.medium, r, mu, mu_s, nu))
-        return trace_rays(
-            self.medium, self._shells, self.columns, self._multiple, r, mu, mu_s, nu
-        )
+        return trace_rays(self.medium, self._shells, self.columns, self._multiple, r, mu, mu_s, nu)
 
     @cached_property
     def _shells(self) -> Array:

@@ -213,13 +213,9 @@ def fill_directions(view, zenith, azimuth, height, first, last, out):
                 sines = math.sin(theta) * math.sin(view.sun_zenith)
                 j_first, j_last = (0, azimuths + 2) if shares_zenith else (row, row + 4)
                 if above > 0.0:
-                    _fill_latitude(
-                        view, False, theta_above, j_first, j_last, weights, latitude[0]
-                    )
+                    _fill_latitude(view, False, theta_above, j_first, j_last, weights, latitude[0])
                 if below > 0.0:
-                    _fill_latitude(
-                        view, True, theta_below, j_first, j_last, weights, latitude[1]
-                    )
+                    _fill_latitude(view, True, theta_below, j_first, j_last, weights, latitude[1])
             _cubic(node[j], azimuths, weights)
             _fill_curves(view, min(along_squared + sines * across_squared[j], 1.0), curves)
             pixel = out[i - first, j]

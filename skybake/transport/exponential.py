@@ -23,8 +23,7 @@ def fast_exp(x):
     n = math.floor(max(x, -300.0) * 1.4426950408889634 + 0.5)
     y = max(x, -300.0) - n * 0.6931471805599453
     series = 1.0 + y * (
-        1.0
-        + y * (1 / 2 + y * (1 / 6 + y * (1 / 24 + y * (1 / 120 + y * (1 / 720 + y / 5040)))))
+        1.0 + y * (1 / 2 + y * (1 / 6 + y * (1 / 24 + y * (1 / 120 + y * (1 / 720 + y / 5040)))))
     )
     exponent_bits = (np.int64(n) + np.int64(1023)) << np.int64(52)
     return series * np.int64(exponent_bits).view(np.float64)

@@ -151,7 +151,9 @@ def trace(medium, shells, r, mu, mu_s, nu, samples):
         elif t < dark_last:
             t_next = min(t_next, dark_last)
         if n + 2 < MAX_SAMPLES // 2:
-            t_next = _limit_depth(medium, r, mu, t, t_next, samples.transmittance, samples.density[n])
+            t_next = _limit_depth(
+                medium, r, mu, t, t_next, samples.transmittance, samples.density[n]
+            )
         lit = t_next <= dark_first or t >= dark_last
         brightest = _add_step(medium, r, mu, t, t_next - t, lit, n, samples)
         n += 2

@@ -1,0 +1,1 @@
+"""Physically based HDR sky maps for any sun, altitude and planet."""
