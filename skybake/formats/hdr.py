@@ -21,6 +21,7 @@ equal energy white, for all light. [lm W⁻¹]"""
 _LARGEST = 2.0**126
 _EXPONENT_BITS = 0x7F800000
 _HALF_STEP_BITS = 0x8000
+_COMMENT_LENGTH = 72
 _SMALLEST_STEP = np.float32(2.0**-120)
 
 
@@ -116,7 +117,8 @@ def header_lines(spec: MapSpec) -> bytes:
     EXPOSURE is the factor from radiance in W m⁻² sr⁻¹ to the value in the file, and
     Radiance's luminance is 179 times radiance, so 179 / white_luminance makes its
     tools report our luminance. Readers for rendering leave the values as they are.
-    Comments carry the other attributes, one a line.
+    Comments carry the other attributes. A long one goes on under the same name in the
+    next line, as readers have lines of 128 bytes and more.
     """
     primaries = " ".join(f"{value:.5g}" for value in spec.colour_space.chromaticities)
     attributes = dict(spec.attributes)
@@ -129,12 +131,17 @@ def header_lines(spec: MapSpec) -> bytes:
     date = attributes.pop("DateTime", None)
     if date is not None:
         lines.append(f"CAPDATE={_one_line(date)}")
-    lines += [f"# {key}={_one_line(value)}" for key, value in attributes.items()]
+    for key, value in attributes.items():
+        text = _one_line(value)
+        starts = range(0, max(1, len(text)), _COMMENT_LENGTH)
+        lines += [f"# {key}={text[start : start + _COMMENT_LENGTH]}" for start in starts]
     return "".join(f"{line}\n" for line in lines).encode()
 
 
 def read_header(path: Path) -> dict[str, str]:
     """Variables and comments of a Radiance picture's header by name, as text.
+
+    Comments of one name are one text in several lines.
 
     Raises
     ------
@@ -146,11 +153,14 @@ def read_header(path: Path) -> dict[str, str]:
         for raw in iter(lambda: file.readline(1 << 20), b"\n"):
             if not raw:
                 break
-            key, equals, value = raw.decode("utf-8", "replace").strip().partition("=")
+            key, equals, value = raw.decode("utf-8", "replace").rstrip("\r\n").partition("=")
             if key == "EXPOSURE":
                 value = repr(float(value) * float(found.get(key, "1")))
+            if key.startswith("#"):
+                key = key.lstrip("# ")
+                value = found.get(key, "") + value
             if equals:
-                found[key.lstrip("# ")] = value
+                found[key] = value
     return found
 
 

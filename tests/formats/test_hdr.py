@@ -84,6 +84,18 @@ def test_the_header_says_what_the_pixels_are(tmp_path):
     }
 
 
+def test_a_long_text_is_cut_into_short_lines_and_joined_again(tmp_path):
+    path = tmp_path / "a.hdr"
+    recipe = "# planet = µ  \\ " * 300
+    write_map(path, sky(), attributes={"skybake:recipe": recipe, "skybake:none": ""})
+    lines = path.read_bytes().partition(b"\n\n")[0].split(b"\n")
+
+    assert max(len(line) for line in lines) < 128
+    assert read_header(path)["skybake:recipe"] == recipe.replace("\\", "\\\\")
+    assert read_header(path)["skybake:none"] == ""
+    assert pixels(path).shape == (64, 128, 3)
+
+
 def test_exposure_gives_the_luminance_by_the_rule_of_radiance(tmp_path):
     """Radiance: luminance = 179 lm/W * value / EXPOSURE."""
     write_map(tmp_path / "a.hdr", sky(), white_luminance=1234.5)

@@ -123,7 +123,9 @@ def test_cmgen_takes_the_faces_of_a_cube_map_from_our_map(tmp_path, suffix):
 def test_cmgen_takes_the_values_as_they_are_in_spite_of_exposure(tmp_path, suffix):
     """Filament adds half a step to the eight bits of RGBE: 128.5 / 256 for 0.5."""
     path = tmp_path / f"a{suffix}"
-    write_map(path, np.full((64, 128, 3), GREY, np.float32), white_luminance=1.0)
+    recipe = "planet = earth\n" * 200
+    rows = np.full((64, 128, 3), GREY, np.float32)
+    write_map(path, rows, white_luminance=1.0, attributes={"skybake:recipe": recipe})
     run(program("cmgen"), "-q", f"--extract={tmp_path}", "-f", "exr", "-s", 32, path)
 
     np.testing.assert_allclose(pixels(tmp_path / "a" / "pz.exr"), GREY, rtol=1 / 250)
