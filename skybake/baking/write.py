@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
-from skybake.bake.panel import ColumnPanel, CrossPanel, EquirectPanel, FacePanel, Panel
-from skybake.bake.scene import Scene
-from skybake.bake.settings import MapSettings
-from skybake.bake.preview import preview_pixels
+from skybake.baking.panel import ColumnPanel, CrossPanel, EquirectPanel, FacePanel, Panel
+from skybake.baking.scene import Scene
+from skybake.baking.settings import MapSettings
+from skybake.baking.preview import preview_pixels
 from skybake.formats.spec import MapSpec
 from skybake.formats.writer import open_map
 from skybake.preset import Planet, load_preset

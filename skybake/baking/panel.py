@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from skybake.bake.scene import Scene
+from skybake.baking.scene import Scene
 from skybake.projection import cubemap, equirect
 
 Pixels = npt.NDArray[np.float32]

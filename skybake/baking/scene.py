@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from skybake.bake.settings import MapSettings
+from skybake.baking.settings import MapSettings
 from skybake.colour.observer import xyz_weights
 from skybake.colour.space import find_colour_space, luminance_weights, rgb_from_xyz
 from skybake.optics.medium import Array
