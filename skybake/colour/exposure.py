@@ -83,8 +83,8 @@ def auto_ev(luminance: npt.NDArray[np.floating]) -> float:
     The mean of log luminance over solid angle is brought to 0.36, a stop above middle
     grey, as a sky is shown. The mean goes over the hemisphere above, unless that is black
     beside the rest as it is in space, and over what is brighter than a hundredth of
-    its 99th percentile: the percentile leaves the sun out, the threshold black space and
-    the night side. Then 95 % of the whole map are kept below 2, which the display
+    its 99th percentile, which the sun does not reach: black space and the night side do
+    not count. Then 95 % of the whole map are kept below 2, which the display
     transforms still tell from white; seen from high up the ground decides by that.
     """
     rows, columns = luminance.shape
