@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -12,8 +11,6 @@ import OpenImageIO
 from skybake.errors import InputError
 from skybake.formats.partial import replace_when_whole, write_error
 from skybake.formats.spec import Tagged
-
-View = Literal["aces2", "aces1"]
 
 # Named, because the defaults of OpenColorIO follow $OCIO and the version of the library.
 _VIEWS = {
@@ -35,7 +32,7 @@ def write_preview(
     colour_space: Tagged,
     *,
     gain: float,
-    view: View = "aces2",
+    view: str = "aces2",
     max_width: int = 1024,
 ) -> None:
     """Write a display-referred sRGB picture of a map.
@@ -84,7 +81,7 @@ def write_preview(
 
 
 def display_values(
-    pixels: npt.NDArray[np.float32], colour_space: Tagged, view: View
+    pixels: npt.NDArray[np.float32], colour_space: Tagged, view: str
 ) -> npt.NDArray[np.float32]:
     """Display-referred sRGB code values in [0, 1] of scene-linear pixels."""
     config, view_name = _VIEWS[view]
