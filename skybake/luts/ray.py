@@ -6,13 +6,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from skybake.luts.multiscatter import (
-    MultiScatter,
-    add_multiple_scattering,
+from skybake.luts.field import (
+    DiffuseField,
+    add_diffuse,
+    allocate_scratch,
     fill_ground_irradiance,
 )
 from skybake.luts.single import add_ground, add_single_scattering
-from skybake.optics.medium import Array, Medium
+from skybake.optics.legendre import PEAK_NODES, Truncation
+from skybake.optics.medium import Array
 from skybake.transport.geometry import shadow_interval
 from skybake.transport.kernel import kernel, run_rows
 from skybake.transport.trace import allocate_samples, ray_limits, trace
@@ -23,9 +25,9 @@ class RayLight(NamedTuple):
 
     Attributes
     ----------
-    single : ndarray of float64, shape (ray, constituent, wavelength)
-        Sunlight that each constituent scatters once toward the observer, before
-        its phase function is applied.
+    single : ndarray of float64, shape (ray, channel, wavelength)
+        Sunlight scattered once toward the observer, before the phase functions of
+        the channels are applied.
     diffuse : ndarray of float64, shape (ray, wavelength)
         The rest: scattered twice or more, and from the ground. [sr⁻¹]
     """
@@ -35,10 +37,10 @@ class RayLight(NamedTuple):
 
 
 def trace_rays(
-    medium: Medium,
+    cut: Truncation,
     shells: Array,
     columns: Array,
-    multiple: MultiScatter,
+    field: DiffuseField,
     r: Array,
     mu: Array,
     mu_s: Array,
@@ -48,9 +50,9 @@ def trace_rays(
 
     Parameters
     ----------
-    medium, shells, columns, multiple
-        The atmosphere, its `altitude_shells`, its table of `build_columns` and
-        its multiple scattering.
+    cut, shells, columns, field
+        The atmosphere without forward peaks, its `altitude_shells`, its table of
+        `build_columns` and its diffuse light.
     r, mu : ndarray of float64, shape (ray,)
         Starts of the rays [km] and cosines of their zenith angles.
     mu_s, nu : ndarray of float64, shape (ray,)
@@ -67,22 +69,27 @@ def trace_rays(
     Neighbours with the same r and mu share their samples as long as neither
     meets the planet's shadow, so rays are best ordered by direction first.
     """
-    constituents, wavelengths = medium.extinction.shape
-    light = RayLight(np.zeros((r.size, constituents, wavelengths)), np.zeros((r.size, wavelengths)))
+    channels, wavelengths = cut.phase.shape[0], cut.phase.shape[2]
+    light = RayLight(np.zeros((r.size, channels, wavelengths)), np.zeros((r.size, wavelengths)))
     rays = np.stack([r, mu, mu_s, nu], axis=1)
 
     def work(first: int, last: int) -> None:
-        samples = allocate_samples(medium)
-        _trace_rays(medium, shells, columns, multiple, rays, samples, first, last, *light)
+        samples, scratch = allocate_samples(cut.medium), allocate_scratch(field)
+        _trace_rays(
+            cut, PEAK_NODES, shells, columns, field, rays, samples, scratch, first, last, *light
+        )
 
     run_rows(r.size, work, chunk=max(64, r.size // 64))
-    light.single[...] *= medium.scattering
     return light
 
 
 @kernel
-def _trace_rays(medium, shells, columns, multiple, rays, samples, first, last, single, diffuse):
+def _trace_rays(
+    cut, nodes, shells, columns, field, rays, samples, scratch, first, last, single, diffuse
+):
+    medium = cut.medium
     sky = np.empty(diffuse.shape[1])
+    spectra = np.empty((3, diffuse.shape[1]))
     shared_r = shared_mu = -2.0
     count = 0
     length = 0.0
@@ -96,9 +103,13 @@ def _trace_rays(medium, shells, columns, multiple, rays, samples, first, last, s
             count, length, hits_ground = trace(medium, shells, r, mu, mu_s, nu, samples)
             shared_r = r if is_lit else -2.0
             shared_mu = mu
-        add_single_scattering(medium, columns, r, mu_s, nu, samples, count, single[i])
-        add_multiple_scattering(medium, multiple, r, mu_s, nu, samples, count, diffuse[i])
+        add_single_scattering(
+            cut, columns, nodes, r, mu_s, nu, samples, count, spectra, single[i]
+        )
+        add_diffuse(
+            field, medium.r_bottom, r, mu, mu_s, nu, samples, count, scratch, diffuse[i]
+        )
         if hits_ground:
             mu_s_ground = (r * mu_s + length * nu) / medium.r_bottom
-            fill_ground_irradiance(multiple, mu_s_ground, sky)
+            fill_ground_irradiance(field, mu_s_ground, scratch.weights, sky)
             add_ground(medium, columns, sky, r, mu_s, nu, length, samples, diffuse[i])

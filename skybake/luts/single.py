@@ -10,26 +10,32 @@ from skybake.transport.kernel import kernel
 
 
 @kernel
-def add_single_scattering(medium, columns, r, mu_s, nu, samples, count, out):
+def add_single_scattering(cut, columns, nodes, r, mu_s, nu, samples, count, scratch, out):
     """Add the sunlight that reaches a ray's samples, before any phase function.
 
     Parameters
     ----------
-    medium : Medium
-        The atmosphere.
+    cut : Truncation
+        The atmosphere without forward peaks, and what restores them.
     columns : ndarray
         Table of `build_columns`.
+    nodes : ndarray of float64
+        `PEAK_NODES`.
     r, mu_s, nu : float
         Start of the ray [km], cosines of the sun's zenith angle there and of
         the angle between ray and sun.
     samples, count : Samples, int
-        Result of `trace`.
-    out : ndarray of float64, shape (constituent, wavelength)
-        Receives the integral of density * transmittance per unit irradiance;
-        times scattering coefficient and phase function it is radiance. [km]
+        Result of `trace` in the truncated medium.
+    scratch : ndarray of float64, shape (3, wavelength)
+        Work space.
+    out : ndarray of float64, shape (channel, wavelength)
+        Receives, per unit irradiance, what the phase functions of the channels
+        multiply; see `skybake.optics.legendre.Truncation`.
     """
+    medium = cut.medium
     constituents, wavelengths = medium.extinction.shape
-    column, light = samples.sun_column, samples.light
+    column = samples.sun_column
+    light, peak, filled = scratch[0], scratch[1], scratch[2]
     for n in range(count):
         if not samples.lit[n]:
             continue
@@ -48,7 +54,45 @@ def add_single_scattering(medium, columns, r, mu_s, nu, samples, count, out):
         for c in range(constituents):
             density = samples.density[n, c]
             for k in range(wavelengths):
-                out[c, k] += density * light[k]
+                out[c, k] += density * medium.scattering[c, k] * light[k]
+        if cut.peaked.size > 0:
+            _split_peak(cut, column, samples, n, light, peak, filled)
+            _add_peak(cut, nodes, samples, n, peak, filled, out)
+
+
+@kernel
+def _split_peak(cut, column, samples, n, light, peak, filled):
+    """Light that was scattered within peaks only, and how far they have filled, 1 - exp(-f y)."""
+    for k in range(light.size):
+        filled[k] = 0.0
+        peak[k] = 0.0
+    for c in cut.peaked:
+        both = column[c] + samples.column_to[n, c]
+        for k in range(light.size):
+            filled[k] += cut.scattering[c, k] * column[c]
+            peak[k] -= cut.fraction[c, k] * cut.scattering[c, k] * both
+    for k in range(light.size):
+        depth = cut.mixture[k] * filled[k]
+        peak[k] = light[k] * fast_exp(peak[k] + depth)
+        filled[k] = 1.0 - fast_exp(-depth)
+
+
+@kernel
+def _add_peak(cut, nodes, samples, n, peak, filled, out):
+    """Share the peak's light among the channels of the two nodes around `filled`."""
+    constituents = cut.fraction.shape[0]
+    for i in range(nodes.size):
+        below = nodes[i] - nodes[i - 1] if i > 0 else 1.0
+        above = nodes[i + 1] - nodes[i] if i + 1 < nodes.size else 1.0
+        for j in range(cut.peaked.size):
+            c = cut.peaked[j]
+            channel = constituents + j * nodes.size + i
+            density = samples.density[n, c]
+            for k in range(peak.size):
+                offset = filled[k] - nodes[i]
+                hat = 1.0 - (offset / above if offset > 0.0 else -offset / below)
+                if hat > 0.0:
+                    out[channel, k] += density * cut.scattering[c, k] * hat * peak[k]
 
 
 @kernel

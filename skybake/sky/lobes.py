@@ -38,7 +38,7 @@ def split_phase(phase: Array, tolerance: float = TOLERANCE) -> Lobes:
 
     Parameters
     ----------
-    phase : ndarray of float64, shape (constituent, SCATTERING_ANGLES, wavelength)
+    phase : ndarray of float64, shape (channel, SCATTERING_ANGLES, wavelength)
         Phase functions. [sr⁻¹]
     tolerance : float, optional
         Largest relative error at any angle and wavelength.

@@ -9,10 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from skybake.errors import InputError
-from skybake.luts.closure import build_multiscatter
-from skybake.luts.multiscatter import MultiScatter
+from skybake.luts.closure import close_field
+from skybake.luts.field import DiffuseField
 from skybake.luts.ray import RayLight, trace_rays
+from skybake.luts.solver import ORDER, solve_field
 from skybake.luts.transmittance import build_columns
+from skybake.optics.legendre import Truncation, keep_peaks, truncate_peaks
 from skybake.optics.medium import Array, build_medium
 from skybake.optics.phase import eval_phase
 from skybake.optics.spectrum import star_irradiance
@@ -28,7 +30,7 @@ from skybake.sky.view import (
 from skybake.transport.march import march_rays
 from skybake.transport.shells import altitude_shells
 
-METHODS = ("hillaire", "march")
+METHODS = ("full", "hillaire", "march")
 WAVELENGTHS = np.linspace(380.0, 720.0, 16)
 """Default sampling of the visible spectrum; radiance is taken as linear between. [nm]"""
 
@@ -53,8 +55,9 @@ class Sky:
         Compass bearing of the sun, 0 = north, clockwise; default south. [rad]
     wavelengths : array_like, optional
         Ascending; default 16 from 380 to 720 nm, or the preset's own. [nm]
-    method : {"hillaire", "march"}, optional
-        Hillaire's tables, or single scattering by nested marching without tables.
+    method : {"full", "hillaire", "march"}, optional
+        All orders of scattering, Hillaire's closure, or single scattering by nested
+        marching without tables.
 
     Raises
     ------
@@ -72,7 +75,7 @@ class Sky:
         *,
         sun_azimuth: float = math.pi,
         wavelengths: Array | None = None,
-        method: str = "hillaire",
+        method: str = "full",
     ) -> None:
         self.planet = preset if isinstance(preset, Planet) else load_preset(preset)
         if not abs(sun_elevation) <= math.pi / 2.0 + 1e-9:
@@ -154,7 +157,7 @@ class Sky:
             [sr⁻¹]
         """
         light = self._light(mu.ravel(), nu.ravel())
-        phase = eval_phase(self.medium.phase, nu.ravel())
+        phase = eval_phase(self.cut.phase, nu.ravel())
         radiance = (light.single * phase).sum(axis=1) + light.diffuse
         return radiance.reshape(*mu.shape, -1)
 
@@ -183,7 +186,7 @@ class Sky:
         mu = np.cos(theta)
         nu = mu * math.cos(sun_zenith) + np.sin(theta) * math.sin(sun_zenith) * np.cos(phi)
         light = self._light(mu.ravel(), nu.ravel())
-        lobes = split_phase(self.medium.phase)
+        lobes = split_phase(self.cut.phase)
         fold = np.einsum("cwq,wk->cwkq", lobes.weights, rgb_weights)
         table = np.tensordot(light.single, fold, axes=2)
         table[:, :, 0] += light.diffuse @ rgb_weights
@@ -201,10 +204,18 @@ class Sky:
         nu = np.clip(nu, -1.0, 1.0)
         if self.method == "march":
             return RayLight(*march_rays(self.medium, r, mu, mu_s, nu))
-        return trace_rays(self.medium, self._shells, self.columns, self._multiple, r, mu, mu_s, nu)
+        return trace_rays(self.cut, self.shells, self.columns, self.field, r, mu, mu_s, nu)
 
     @cached_property
-    def _shells(self) -> Array:
+    def cut(self) -> Truncation:
+        """The atmosphere without forward peaks, and what restores them."""
+        if self.method == "full":
+            return truncate_peaks(self.medium, ORDER)
+        return keep_peaks(self.medium)
+
+    @cached_property
+    def shells(self) -> Array:
+        """Altitudes at which rays are cut into steps. [km]"""
         return altitude_shells(self.medium)
 
     @cached_property
@@ -213,5 +224,7 @@ class Sky:
         return build_columns(self.medium)
 
     @cached_property
-    def _multiple(self) -> MultiScatter:
-        return build_multiscatter(self.medium, self.columns)
+    def field(self) -> DiffuseField:
+        """The light that was scattered before."""
+        solve = solve_field if self.method == "full" else close_field
+        return solve(self.cut, self.columns)

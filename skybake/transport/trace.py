@@ -37,6 +37,8 @@ class Samples(NamedTuple):
         Whether the point is outside the planet's shadow.
     density : ndarray of float64, shape (MAX_SAMPLES, constituent)
         Relative densities.
+    column_to : ndarray of float64, shape (MAX_SAMPLES, constituent)
+        Columns from the observer. [km]
     weight : ndarray of float64, shape (MAX_SAMPLES, wavelength)
         Transmittance to the observer times the length that the sample stands
         for; a sum of weight * source is the integral along the ray. [km]
@@ -52,6 +54,7 @@ class Samples(NamedTuple):
     radius: Array
     lit: npt.NDArray[np.bool_]
     density: Array
+    column_to: Array
     weight: Array
     transmittance: Array
     column: Array
@@ -67,6 +70,7 @@ def allocate_samples(medium: Medium) -> Samples:
         radius=np.empty(MAX_SAMPLES),
         lit=np.empty(MAX_SAMPLES, np.bool_),
         density=np.empty((MAX_SAMPLES, constituents)),
+        column_to=np.empty((MAX_SAMPLES, constituents)),
         weight=np.empty((MAX_SAMPLES, wavelengths)),
         transmittance=np.empty(wavelengths),
         column=np.empty(constituents),
@@ -233,6 +237,8 @@ def _add_step(medium, r, mu, t, step, lit, n, samples):
         to_low = samples.column[c] + step * (GAUSS_SELF * low + GAUSS_FAR * high)
         to_high = samples.column[c] + step * (GAUSS_NEAR * low + GAUSS_SELF * high)
         to_end = samples.column[c] + 0.5 * step * (low + high)
+        samples.column_to[n, c] = to_low
+        samples.column_to[n + 1, c] = to_high
         samples.column[c] = to_end
         for k in range(wavelengths):
             extinction = medium.extinction[c, k]

@@ -1,0 +1,5 @@
+"""``python -m skybake``."""
+
+from skybake.cli import main
+
+main()

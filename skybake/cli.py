@@ -1,0 +1,103 @@
+"""The command line: commands, and faults as one line with an exit status."""
+
+from __future__ import annotations
+
+import os
+import sys
+import warnings
+from typing import Any, NoReturn, TextIO
+
+import click
+
+import skybake
+from skybake.commands.presets import presets
+from skybake.commands.preview import preview
+from skybake.commands.render import render
+from skybake.errors import SkybakeError
+
+FAILED = 1
+INTERRUPTED = 130
+
+
+class _CommandLine(click.Group):
+    """A group whose faults are one line on stderr and an exit status."""
+
+    def main(self, *args: Any, **kwargs: Any) -> NoReturn:
+        """Parse, run and exit."""
+        kwargs["standalone_mode"] = False
+        kwargs["prog_name"] = "skybake"
+        with warnings.catch_warnings():
+            warnings.showwarning = _show_warning
+            try:
+                status = super().main(*args, **kwargs)
+            except click.exceptions.NoArgsIsHelpError as error:
+                error.show()
+                status = error.exit_code
+            except click.ClickException as error:
+                status = _fail(error.format_message(), error.exit_code)
+            except SkybakeError as error:
+                status = _fail(str(error), FAILED)
+            except BrokenPipeError:
+                # Whoever read our output has closed it; nor can Python flush it at exit.
+                os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+                status = FAILED
+            except click.Abort:
+                _exit_now(_fail("interrupted", INTERRUPTED))
+        sys.exit(status or 0)
+
+
+def _fail(message: str, status: int) -> int:
+    line = " ".join(message.split())
+    click.echo(f"skybake: {line}", err=True)
+    return status
+
+
+def _exit_now(status: int) -> NoReturn:
+    """Exit without waiting for threads, which may be compiling for seconds."""
+    if threads_alive():
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
+    sys.exit(status)
+
+
+def threads_alive() -> bool:
+    """Whether a thread beside this one runs."""
+    import threading
+
+    return threading.active_count() > 1
+
+
+def _show_warning(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,
+    line: str | None = None,
+) -> None:
+    click.echo(f"skybake: warning: {' '.join(str(message).split())}", err=True)
+
+
+@click.group(
+    cls=_CommandLine,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+)
+@click.version_option(skybake.__version__, message="%(prog)s %(version)s")
+def main() -> None:
+    """Bake physically based HDR sky maps for any sun, altitude and planet.
+
+    \b
+    Examples:
+      skybake render
+      skybake render --sun 5deg --preset mars
+      skybake presets list
+      skybake preview earth_sun+30.00deg_equirect.exr -o earth.png
+
+    Exit status: 0 done, 1 failed, 2 wrong usage, 130 interrupted.
+    """
+
+
+main.add_command(render)
+main.add_command(presets)
+main.add_command(preview)

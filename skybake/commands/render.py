@@ -1,0 +1,178 @@
+"""``skybake render``: the main job."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import click
+
+from skybake.commands import parameters, report, request
+
+
+@click.command()
+@click.option(
+    "--preset",
+    default="earth",
+    show_default=True,
+    metavar="NAME|PATH",
+    help="World: a name from 'skybake presets list', or a TOML file of your own.",
+)
+@click.option(
+    "--sun",
+    "sun_elevation",
+    type=parameters.ELEVATION,
+    default="30deg",
+    show_default=True,
+    help="Geometric elevation of the sun's centre, -90deg to 90deg.",
+)
+@click.option(
+    "--sun-azimuth",
+    type=parameters.BEARING,
+    default="180deg",
+    show_default=True,
+    help="Compass bearing of the sun: 0deg is north, 90deg east.",
+)
+@click.option(
+    "--altitude",
+    type=parameters.ALTITUDE,
+    default="0m",
+    show_default=True,
+    help="Of the observer above the ground.",
+)
+@click.option(
+    "--projection",
+    type=click.Choice(parameters.PROJECTIONS),
+    default="equirect",
+    show_default=True,
+    help="Kind of map.",
+)
+@click.option(
+    "--size",
+    type=parameters.Size(),
+    metavar="WxH|EDGE",
+    show_default="2048x1024, or 1024 for a cubemap",
+    help="Width and height of an equirect map, 2:1, or edge of a cubemap's face.",
+)
+@click.option(
+    "--cube-layout",
+    type=click.Choice(parameters.CUBE_LAYOUTS),
+    show_default="faces",
+    help="Six files px nx py ny pz nz, one horizontal cross, or one OpenEXR cube.",
+)
+@click.option(
+    "--colorspace",
+    type=click.Choice(parameters.COLOUR_SPACES),
+    default="lin_rec709",
+    show_default=True,
+    help="Linear, scene-referred space of the pixels.",
+)
+@click.option(
+    "--units",
+    type=click.Choice(parameters.UNITS),
+    show_default="ev15",
+    help="What a pixel value of 1 stands for: 1.2 * 2^15 cd/m2, or 1 cd/m2.",
+)
+@click.option(
+    "--ev",
+    type=float,
+    metavar="N",
+    help="Let a pixel value of 1 stand for 1.2 * 2^N cd/m2 instead.",
+)
+@click.option(
+    "--pixel",
+    type=click.Choice(parameters.PIXELS),
+    show_default="auto",
+    help="Stored type of an EXR; auto takes half where it holds every value.",
+)
+@click.option(
+    "--compression",
+    metavar="NAME[:LEVEL]",
+    show_default="zip",
+    help="Of an EXR: none, rle, zips, zip[:1-9], piz, pxr24, b44, b44a, dwaa[:0-135], ...",
+)
+@click.option("--clamp-negative", is_flag=True, help="Set negative values, out of gamut, to 0.")
+@click.option(
+    "--sun-disc",
+    type=click.Choice(parameters.SUN_DISCS),
+    default="include",
+    show_default=True,
+    help="Whether the map holds the sun's disc, or nothing else.",
+)
+@click.option(
+    "--method",
+    type=click.Choice(parameters.METHODS),
+    default=parameters.METHODS[0],
+    show_default=True,
+    help="Light transport: Hillaire's tables, or single scattering without tables.",
+)
+@click.option(
+    *("-o", "--output"),
+    metavar="FILE",
+    type=parameters.FilePath(".exr", ".hdr"),
+    show_default="a name that says what it is, in the current folder",
+    help="Map to write, .exr or .hdr; {face} in it is replaced for six files.",
+)
+@click.option(
+    "--preview",
+    is_flag=False,
+    flag_value=request.BESIDE,
+    metavar="[FILE.png]",
+    type=parameters.FilePath(".png"),
+    help="Also write a picture to look at; by default beside the map.",
+)
+@click.option(
+    "--preview-ev",
+    type=parameters.EV,
+    show_default="auto",
+    help="Its exposure value at ISO 100; auto finds a legible one.",
+)
+@click.option(
+    "--view",
+    type=click.Choice(parameters.VIEWS),
+    show_default=parameters.VIEWS[0],
+    help="Its display transform: ACES 2.0, or that of ACES 1.3.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object.")
+@click.option("--quiet", is_flag=True, help="Print no progress and no summary.")
+@click.pass_context
+def render(context: click.Context, **options: Any) -> None:
+    """Bake a sky map.
+
+    Angles are 5deg, 0.1rad, 30arcmin or bare degrees; lengths 2km, 1500m, 30000ft or bare metres.
+    +Y is up and -Z north; azimuths are compass bearings, 0 = north, clockwise. The middle of an
+    equirect map faces south, where the sun stands by default; its left half is the east.
+
+    \b
+    Examples:
+      skybake render --sun 5deg --preset mars --preview
+      skybake render --sun -4deg --altitude 2km --size 4096x2048 -o dusk.exr
+      skybake render --projection cubemap --size 512 --colorspace acescg --units nits
+    """
+    started = time.perf_counter()
+    request.check_together(context)
+    settings = request.map_settings(options)
+
+    from skybake.baking import bake, default_path
+    from skybake.preset import load_preset
+
+    planet = load_preset(options["preset"])
+    output = options["output"] or default_path(planet, settings)
+    quiet = options["quiet"]
+    if not quiet:
+        report.announce(output)
+    with report.progress_bar(quiet=quiet) as progress:
+        baked = bake(
+            planet,
+            output,
+            settings,
+            preview=request.preview_path(options["preview"], output),
+            preview_ev=options["preview_ev"],
+            preview_view=options["view"] or parameters.VIEWS[0],
+            progress=progress,
+        )
+    seconds = time.perf_counter() - started
+    if options["as_json"]:
+        report.print_json(baked, planet.name, settings, seconds)
+    elif not quiet:
+        report.print_summary(baked, seconds)

@@ -1,0 +1,77 @@
+"""What ``skybake render`` tells: progress on stderr, the result on stdout."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    from skybake.baking import Baked, MapSettings
+
+_STEPS = 1000
+
+
+def announce(output: Path) -> None:
+    """Say what is baked, and on the first run why it takes longer."""
+    from skybake.transport.kernel import is_warm
+
+    if not is_warm():
+        click.echo("skybake: compiling kernels, once for this version", err=True)
+    if not sys.stderr.isatty():
+        click.echo(f"skybake: baking {output}", err=True)
+
+
+@contextmanager
+def progress_bar(*, quiet: bool) -> Iterator[Callable[[float], None] | None]:
+    """Yield a function that takes the share done, or None without a terminal."""
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    with click.progressbar(length=_STEPS, label="baking", file=sys.stderr) as bar:
+        yield lambda share: bar.update(round(share * _STEPS) - bar.pos)
+
+
+def print_summary(baked: Baked, seconds: float) -> None:
+    """Print files and illuminances for people."""
+    for path in baked.files:
+        click.echo(path)
+    if baked.preview is not None:
+        click.echo(f"{baked.preview}  exposed for EV {baked.preview_ev:.2f}")
+    click.echo(
+        f"sun {baked.direct_illuminance:.5g} lx ({baked.direct_normal_illuminance:.5g} lx facing "
+        f"it), sky {baked.sky_illuminance:.5g} lx on the horizontal; "
+        f"1.0 = {baked.white_luminance:.6g} cd/m2; {baked.pixel}; {seconds:.2f} s"
+    )
+    if baked.clamped:
+        click.echo(f"{baked.clamped} negative values, out of gamut, were stored as 0")
+
+
+def print_json(baked: Baked, preset: str, settings: MapSettings, seconds: float) -> None:
+    """Print one JSON object on one line."""
+    click.echo(json.dumps(result(baked, preset, settings, seconds)))
+
+
+def result(baked: Baked, preset: str, settings: MapSettings, seconds: float) -> dict[str, Any]:
+    """Return what ``--json`` prints, see docs/cli.md."""
+    return {
+        "files": [str(path) for path in baked.files],
+        "preset": preset,
+        "sun_direction": list(baked.sun_direction),
+        "direct_illuminance_lux": baked.direct_illuminance,
+        "direct_normal_illuminance_lux": baked.direct_normal_illuminance,
+        "sky_illuminance_lux": baked.sky_illuminance,
+        "white_luminance_cd_m2": baked.white_luminance,
+        "projection": settings.projection,
+        "colorspace": settings.colorspace,
+        "pixel": baked.pixel,
+        "clamped": baked.clamped,
+        "preview": None if baked.preview is None else str(baked.preview),
+        "preview_ev": baked.preview_ev,
+        "seconds": round(seconds, 3),
+    }

@@ -1,0 +1,212 @@
+"""The diffuse light in the atmosphere: angular moments over altitude and sun angle.
+
+A field of order L holds, at each altitude and solar zenith angle, the real
+spherical harmonics of the radiance up to l = L. Order 0 is an isotropic field.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from skybake.luts.harmonics import Harmonics, fill_harmonics
+from skybake.optics.medium import Array
+from skybake.transport.kernel import kernel
+
+ANGLE_BINS = 2048
+
+
+class DiffuseField(NamedTuple):
+    """Diffuse radiance per unit irradiance of the sun, as kernels read it.
+
+    Attributes
+    ----------
+    harmonics : Harmonics
+        Recurrence of the harmonics that `radiance` counts.
+    altitude : ndarray of float64, shape (altitude,)
+        Ascending from 0 to the top; linear between. [km]
+    sun_angle : ndarray of float64, shape (sun,)
+        Solar zenith angles, ascending from 0; cubic between. [rad]
+    sun_bin : ndarray of int64, shape (ANGLE_BINS,)
+        First of the four nodes around a solar zenith angle, by equal bins of pi.
+    source : ndarray of float64, shape (constituent, order + 1, wavelength)
+        Scattering coefficient times chi_l at density 1. [km⁻¹]
+    radiance : ndarray of float32, shape (altitude, sun, harmonic, wavelength)
+        Moments of the radiance scattered or reflected at least once. [sr⁻¹]
+    ground : ndarray of float64, shape (sun, wavelength)
+        Irradiance of the ground by the sky.
+    """
+
+    harmonics: Harmonics
+    altitude: Array
+    sun_angle: Array
+    sun_bin: npt.NDArray[np.int64]
+    source: Array
+    radiance: npt.NDArray[np.float32]
+    ground: Array
+
+
+def sun_bins(sun_angle: Array) -> npt.NDArray[np.int64]:
+    """Table from equal bins of the solar zenith angle to the first of four nodes.
+
+    It holds for the start of a bin; bins are narrower than the intervals between
+    nodes, so a lookup moves on by one node at most.
+    """
+    starts = np.arange(ANGLE_BINS) * (math.pi / ANGLE_BINS)
+    interval = np.searchsorted(sun_angle, starts, side="right") - 1
+    return np.clip(interval - 1, 0, sun_angle.size - 4)
+
+
+@kernel
+def fast_acos(x):
+    """Arc cosine within 2e-8 rad (Abramowitz and Stegun 4.4.46), without a library call."""
+    a = min(abs(x), 1.0)
+    series = 1.5707963050 + a * (
+        -0.2145988016
+        + a
+        * (
+            0.0889789874
+            + a
+            * (
+                -0.0501743046
+                + a
+                * (
+                    0.0308918810
+                    + a * (-0.0170881256 + a * (0.0066700901 - a * 0.0012624911))
+                )
+            )
+        )
+    )
+    positive = math.sqrt(1.0 - a) * series
+    return positive if x >= 0.0 else math.pi - positive
+
+
+@kernel
+def sun_weights(sun_angle, sun_bin, mu_s, out):
+    """First node and Lagrange weights of the four nodes around a sun's position."""
+    angle = min(fast_acos(mu_s), sun_angle[-1])
+    j = sun_bin[min(int(angle * (ANGLE_BINS / math.pi)), ANGLE_BINS - 1)]
+    if angle > sun_angle[j + 2] and j + 4 < sun_angle.size:
+        j += 1
+    a, b, c, d = sun_angle[j], sun_angle[j + 1], sun_angle[j + 2], sun_angle[j + 3]
+    xa, xb, xc, xd = angle - a, angle - b, angle - c, angle - d
+    out[0] = xb * xc * xd / ((a - b) * (a - c) * (a - d))
+    out[1] = xa * xc * xd / ((b - a) * (b - c) * (b - d))
+    out[2] = xa * xb * xd / ((c - a) * (c - b) * (c - d))
+    out[3] = xa * xb * xc / ((d - a) * (d - b) * (d - c))
+    return j
+
+
+@kernel
+def altitude_weight(altitude, h):
+    """Lower node around an altitude and the share of the upper one."""
+    low, high = 0, altitude.size - 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        if altitude[middle] <= h:
+            low = middle
+        else:
+            high = middle
+    share = (h - altitude[low]) / (altitude[low + 1] - altitude[low])
+    return low, min(max(share, 0.0), 1.0)
+
+
+@kernel
+def fill_ground_irradiance(field, mu_s, weights, out):
+    """Write the sky's irradiance of the ground to `out`, shape (wavelength,)."""
+    j = sun_weights(field.sun_angle, field.sun_bin, mu_s, weights)
+    for k in range(out.size):
+        value = 0.0
+        for q in range(4):
+            value += weights[q] * field.ground[j + q, k]
+        out[k] = max(value, 0.0)
+
+
+@kernel
+def add_diffuse(field, r_bottom, r, mu, mu_s, nu, samples, count, scratch, out):
+    """Add the light that a ray's samples scatter out of the diffuse field.
+
+    Parameters
+    ----------
+    field : DiffuseField
+        The light to be scattered.
+    r_bottom : float
+        Radius of the ground. [km]
+    r, mu, mu_s, nu : float
+        Start of the ray [km], cosines of the zenith angles of ray and sun there and
+        of the angle between them.
+    samples, count : Samples, int
+        Result of `trace`.
+    scratch : FieldScratch
+        Work space of `allocate_scratch`.
+    out : ndarray of float64, shape (wavelength,)
+        Receives radiance per unit irradiance. [sr⁻¹]
+    """
+    order = field.harmonics.order
+    wavelengths = out.size
+    moments = field.radiance.shape[2]
+    for n in range(count):
+        radius = samples.radius[n]
+        t = samples.distance[n]
+        mu_s_here = min(max((r * mu_s + t * nu) / radius, -1.0), 1.0)
+        i, u = altitude_weight(field.altitude, radius - r_bottom)
+        j = sun_weights(field.sun_angle, field.sun_bin, mu_s_here, scratch.weights)
+        local = scratch.local
+        for k in range(moments * wavelengths):
+            local[k] = 0.0
+        for side in range(2):
+            share = (1.0 - u) if side == 0 else u
+            for q in range(4):
+                weight = np.float32(share * scratch.weights[q])
+                node = field.radiance[i + side, j + q].reshape(moments * wavelengths)
+                for k in range(moments * wavelengths):
+                    local[k] += weight * node[k]
+        _fill_scattering(field, samples, n, scratch.scattering)
+        mu_here = min(max((r * mu + t) / radius, -1.0), 1.0)
+        fill_harmonics(field.harmonics, mu_here, scratch.polar)
+        sines = math.sqrt((1.0 - mu_here * mu_here) * (1.0 - mu_s_here * mu_s_here))
+        cosine = 1.0 if sines < 1e-12 else (nu - mu_here * mu_s_here) / sines
+        cosine = min(max(cosine, -1.0), 1.0)
+        before, now = cosine, 1.0
+        p = 0
+        for m in range(order + 1):
+            for degree in range(m, order + 1):
+                factor = np.float32(now * scratch.polar[p])
+                for k in range(wavelengths):
+                    out[k] += factor * scratch.scattering[degree, k] * local[p * wavelengths + k]
+                p += 1
+            before, now = now, 2.0 * cosine * now - before
+
+
+@kernel
+def _fill_scattering(field, samples, n, out):
+    """Write weight * scattering coefficient * chi_l of a sample, shape (order + 1, wavelength)."""
+    for degree in range(out.shape[0]):
+        for k in range(out.shape[1]):
+            total = 0.0
+            for c in range(field.source.shape[0]):
+                total += samples.density[n, c] * field.source[c, degree, k]
+            out[degree, k] = total * samples.weight[n, k]
+
+
+class FieldScratch(NamedTuple):
+    """Work space of `add_diffuse`; each thread needs its own."""
+
+    weights: Array
+    local: npt.NDArray[np.float32]
+    scattering: npt.NDArray[np.float32]
+    polar: Array
+
+
+def allocate_scratch(field: DiffuseField) -> FieldScratch:
+    """Make the work space for looking up a field."""
+    _, _, moments, wavelengths = field.radiance.shape
+    return FieldScratch(
+        weights=np.empty(4),
+        local=np.empty(moments * wavelengths, np.float32),
+        scattering=np.empty((field.harmonics.order + 1, wavelengths), np.float32),
+        polar=np.empty(moments),
+    )
