@@ -1,17 +1,14 @@
 """Marching without tables and tracing with tables, each the other's oracle at order 1."""
 
-import functools
 import math
 
 import numpy as np
 import pytest
 
-from skybake.luts.closure import build_multiscatter
 from skybake.luts.ray import trace_rays
-from skybake.luts.transmittance import build_columns
 from skybake.transport.march import march_rays
-from skybake.transport.shells import altitude_shells
 from tests.media import cosine_to_sun
+from tests.skies import truth_sky
 from tests.truth import truth_medium
 
 
@@ -26,21 +23,14 @@ def rays(medium, h, elevation):
     return np.full(mu.shape, r), mu, mu_s, cosine_to_sun(mu, mu_s, azimuth)
 
 
-@functools.cache
-def tables(name):
-    medium = truth_medium(name)
-    columns = build_columns(medium)
-    return columns, build_multiscatter(medium, columns)
-
-
 @pytest.mark.parametrize("h", [0.001, 10.0, 400.0])
 @pytest.mark.parametrize(("elevation", "tolerance"), [(40.0, 2e-3), (3.0, 2e-3), (-3.0, 5e-3)])
 @pytest.mark.parametrize("name", ["EARTH_A", "MARS_A"])
 def test_marching_agrees_with_tables_at_the_first_order(name, elevation, tolerance, h):
     medium = truth_medium(name)
-    columns, multiple = tables(name)
+    sky = truth_sky(name, elevation, h, "hillaire")
     arguments = rays(medium, h, elevation)
-    traced = trace_rays(medium, altitude_shells(medium), columns, multiple, *arguments)
+    traced = trace_rays(sky.cut, sky.shells, sky.columns, sky.field, *arguments)
     # From orbit steps crowd at the top of the air, so the haze at the limb needs many.
     view_steps = 8192 if h > 100.0 else 1024
     single, _ = march_rays(medium, *arguments, view_steps=view_steps, light_steps=256)
@@ -62,12 +52,12 @@ def test_marching_converges_with_the_square_of_the_step():
 @pytest.mark.parametrize("name", ["EARTH_A", "MARS_A"])
 def test_sunlit_ground_by_marching_is_the_traced_ground_without_skylight(name):
     medium = truth_medium(name)
-    columns, multiple = tables(name)
-    dark = multiple._replace(
-        transfer=np.zeros_like(multiple.transfer), ground=np.zeros_like(multiple.ground)
+    sky = truth_sky(name, 40.0, 10.0, "hillaire")
+    dark = sky.field._replace(
+        radiance=np.zeros_like(sky.field.radiance), ground=np.zeros_like(sky.field.ground)
     )
     arguments = rays(medium, 10.0, 40.0)
-    traced = trace_rays(medium, altitude_shells(medium), columns, dark, *arguments).diffuse
+    traced = trace_rays(sky.cut, sky.shells, sky.columns, dark, *arguments).diffuse
     _, ground = march_rays(medium, *arguments, view_steps=1024)
     assert (ground > 0.0).any()
     np.testing.assert_allclose(ground, traced, rtol=2e-3, atol=1e-9)
