@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 import sys
+import threading
 import warnings
-from typing import Any, NoReturn, TextIO
+from typing import Any, NoReturn
 
 import click
 
@@ -54,28 +55,14 @@ def _fail(message: str, status: int) -> int:
 
 def _exit_now(status: int) -> NoReturn:
     """Exit without waiting for threads, which may be compiling for seconds."""
-    if threads_alive():
+    if threading.active_count() > 1:
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(status)
     sys.exit(status)
 
 
-def threads_alive() -> bool:
-    """Whether a thread beside this one runs."""
-    import threading
-
-    return threading.active_count() > 1
-
-
-def _show_warning(
-    message: Warning | str,
-    category: type[Warning],
-    filename: str,
-    lineno: int,
-    file: TextIO | None = None,
-    line: str | None = None,
-) -> None:
+def _show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
     click.echo(f"skybake: warning: {' '.join(str(message).split())}", err=True)
 
 

@@ -56,7 +56,8 @@ class Scene:
         # Three wavelengths stand for R, G and B, and the sun for white of its illuminance.
         illuminance = xyz_weights(WAVELENGTHS, *star)[:, 1].sum()
         xyz_from_rgb = np.linalg.inv(rgb_from_xyz(find_colour_space("lin_rec709")))
-        return illuminance * xyz_from_rgb.T
+        weights: Array = illuminance * xyz_from_rgb.T
+        return weights
 
     @cached_property
     def rgb_weights(self) -> Array:

@@ -9,6 +9,7 @@ from typing import Any
 from skybake.colour.exposure import luminance_from_ev, luminance_from_units
 from skybake.colour.space import ColourSpace, find_colour_space
 from skybake.errors import InputError
+from skybake.formats.compression import parse_compression
 from skybake.sky.sky import METHODS
 
 PROJECTIONS = ("equirect", "cubemap")
@@ -85,7 +86,7 @@ class MapSettings:
             raise InputError(f"size: must be from {smallest} to {LARGEST}, got {self.width}")
         if self.projection == "equirect" and self.width % 2:
             raise InputError(f"size: width must be twice the height, got an odd width {self.width}")
-        _ = self.space, self.white_luminance
+        _ = self.space, self.white_luminance, parse_compression(self.compression)
 
     @property
     def space(self) -> ColourSpace:

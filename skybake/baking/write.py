@@ -9,15 +9,19 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
 from skybake.baking.panel import ColumnPanel, CrossPanel, EquirectPanel, FacePanel, Panel
+from skybake.baking.paths import default_path, map_paths
+from skybake.baking.preview import legible_ev
 from skybake.baking.scene import Scene
 from skybake.baking.settings import MapSettings
-from skybake.baking.preview import preview_pixels
-from skybake.formats.spec import MapSpec
-from skybake.formats.writer import open_map
+from skybake.colour.exposure import luminance_from_ev
+from skybake.formats.preview import Show, check_preview, open_preview
+from skybake.formats.spec import Attribute, MapSpec
+from skybake.formats.writer import MapWriter, check_map_path, open_maps
 from skybake.preset import Planet, load_preset
 from skybake.projection.cubemap import FACES
 from skybake.projection.equirect import column_bearings, row_zeniths
@@ -111,14 +115,18 @@ def bake(
     """
     settings = settings or MapSettings()
     planet = preset if isinstance(preset, Planet) else load_preset(preset)
-    target = Path(output) if output is not None else default_path(planet, settings)
+    paths = map_paths(Path(output) if output else default_path(planet, settings), settings)
+    preview = None if preview is None else Path(preview)
+    for path in paths:
+        check_map_path(path)
+    if preview is not None:
+        check_preview(preview, preview_view)
     scene = Scene(planet, settings)
+    x, y, z = scene.sky.sun_direction.tolist()
     normal, horizontal = scene.sun_illuminance()
     sky_illuminance = scene.sky_illuminance()
-    panels = _panels(scene, target)
-    pixel = _pixel(scene, settings, max(panel.peak for panel in panels.values()))
-    attributes = {
-        "skybake:sunDirection": tuple(scene.sky.sun_direction.tolist()),
+    attributes: dict[str, Attribute] = {
+        "skybake:sunDirection": (x, y, z),
         "skybake:directNormalIlluminance": normal,
         "skybake:directIlluminance": horizontal,
         "skybake:skyIlluminance": sky_illuminance,
@@ -127,6 +135,8 @@ def bake(
             {"map": settings.recipe(), "preset": planet.recipe}, sort_keys=True
         ),
     }
+    panels = dict(zip(paths, _panels(scene), strict=True))
+    pixel = _pixel(scene, settings, max(panel.peak for panel in panels.values()))
     specs = {
         path: MapSpec(
             panel.width,
@@ -140,53 +150,42 @@ def bake(
         )
         for path, panel in panels.items()
     }
-    clamped = _write(panels, specs, progress)
-    if preview is not None:
-        preview = Path(preview)
-        preview_ev = _write_preview(scene, preview, preview_ev, preview_view)
+    with ExitStack() as stack:
+        # Everything is written before anything takes its name: all files appear, or none.
+        show = preview and stack.enter_context(open_preview(preview, view=preview_view))
+        writers = stack.enter_context(open_maps(specs))
+        _write(panels, writers, progress)
+        if show:
+            preview_ev = _show(scene, show, preview_ev)
     return Baked(
-        files=tuple(panels),
-        sun_direction=attributes["skybake:sunDirection"],
+        files=paths,
+        sun_direction=(x, y, z),
         direct_normal_illuminance=normal,
         direct_illuminance=horizontal,
         sky_illuminance=sky_illuminance,
         white_luminance=settings.white_luminance,
-        pixel=pixel if target.suffix.lower() == ".exr" else "rgbe",
+        pixel=pixel if paths[0].suffix.lower() == ".exr" else "rgbe",
         preview=preview,
         preview_ev=preview_ev,
-        clamped=clamped,
+        clamped=sum(writer.clamped for writer in writers.values()),
     )
 
 
-def default_path(planet: Planet, settings: MapSettings) -> Path:
-    """Name that says what a map is, as ``mars_sun+05.00deg_equirect.exr``."""
-    elevation = f"{math.degrees(settings.sun_elevation):+06.2f}deg"
-    altitude = f"_{settings.altitude * 1e3:g}m" if settings.altitude > 0.0 else ""
-    return Path(f"{planet.name}_sun{elevation}{altitude}_{settings.projection}.exr")
-
-
-def face_path(target: Path, face: str) -> Path:
-    """Name of a face's file."""
-    if "{face}" in target.name:
-        return target.with_name(target.name.replace("{face}", face))
-    return target.with_name(f"{target.stem}_{face}{target.suffix}")
-
-
-def _panels(scene: Scene, target: Path) -> dict[Path, Panel]:
+def _panels(scene: Scene) -> list[Panel]:
     settings = scene.settings
     if settings.projection == "equirect":
-        return {target: EquirectPanel(scene, settings.width)}
+        return [EquirectPanel(scene, settings.width)]
     if settings.cube_layout == "cross":
-        return {target: CrossPanel(scene, settings.width)}
+        return [CrossPanel(scene, settings.width)]
     if settings.cube_layout == "exr":
-        return {target: ColumnPanel(scene, settings.width)}
-    return {face_path(target, face): FacePanel(scene, face, settings.width) for face in FACES}
+        return [ColumnPanel(scene, settings.width)]
+    return [FacePanel(scene, face, settings.width) for face in FACES]
 
 
-def _pixel(scene: Scene, settings: MapSettings, peak: float) -> str:
+def _pixel(scene: Scene, settings: MapSettings, peak: float) -> Literal["half", "float"]:
     """Type in which no value overflows and no sky value loses bits."""
     if settings.pixel != "auto":
-        return settings.pixel
+        return "half" if settings.pixel == "half" else "float"
     if settings.sun_disc == "only":
         return "half" if peak < HALF_LARGEST else "float"
     zenith = row_zeniths(SURVEY_HEIGHT)[:, None]
@@ -201,15 +200,15 @@ def _pixel(scene: Scene, settings: MapSettings, peak: float) -> str:
     return "half" if largest < HALF_LARGEST and smallest >= HALF_SMALLEST else "float"
 
 
-def _write(panels: dict[Path, Panel], specs: dict[Path, MapSpec], progress: Progress | None) -> int:
-    """Write all files or none; returns how many negative values were lost."""
+def _write(
+    panels: dict[Path, Panel], writers: dict[Path, MapWriter], progress: Progress | None
+) -> None:
     bands = [
         (path, first, min(first + BAND_ROWS, panel.height))
         for path, panel in panels.items()
         for first in range(0, panel.height, BAND_ROWS)
     ]
-    with ExitStack() as stack, ThreadPoolExecutor(1) as ahead:
-        writers = {path: stack.enter_context(open_map(path, specs[path])) for path in panels}
+    with ThreadPoolExecutor(1) as ahead:
         pending = ahead.submit(panels[bands[0][0]].rows, *bands[0][1:])
         for i, (path, first, last) in enumerate(bands):
             rows = pending.result()
@@ -219,15 +218,17 @@ def _write(panels: dict[Path, Panel], specs: dict[Path, MapSpec], progress: Prog
             writers[path].write_rows(first, last, rows)
             if progress is not None:
                 progress((i + 1) / len(bands))
-    return sum(writer.clamped for writer in writers.values())
 
 
-def _write_preview(scene: Scene, path: Path, ev: float | None, view: str) -> float:
-    """Write a small display-referred picture of a scene and return its exposure value."""
-    if scene.settings.projection == "equirect":
-        panel: Panel = EquirectPanel(scene, min(scene.settings.width, PREVIEW_WIDTH))
-    else:
-        panel = CrossPanel(scene, min(scene.settings.width, PREVIEW_WIDTH // 4))
-    pixels = panel.rows(0, panel.height)
+def _show(scene: Scene, show: Show, ev: float | None) -> float:
+    """Make a small display-referred picture of a scene and return its exposure value."""
     settings = scene.settings
-    return preview_pixels(path, pixels, settings.space, settings.white_luminance, ev=ev, view=view)
+    if settings.projection == "equirect":
+        panel: Panel = EquirectPanel(scene, min(settings.width, PREVIEW_WIDTH))
+    else:
+        panel = CrossPanel(scene, min(settings.width, PREVIEW_WIDTH // 4))
+    pixels = panel.rows(0, panel.height)
+    if ev is None:
+        ev = legible_ev(pixels, settings.space, settings.white_luminance)
+    show(pixels, settings.space, settings.white_luminance / luminance_from_ev(ev))
+    return ev

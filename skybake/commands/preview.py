@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from skybake.commands.parameters import EV, VIEWS, FilePath
+from skybake.commands.parameters import VIEWS, exposure, with_suffix
 
 
 @click.command()
@@ -14,13 +14,15 @@ from skybake.commands.parameters import EV, VIEWS, FilePath
 @click.option(
     *("-o", "--output"),
     metavar="OUT.png",
-    type=FilePath(".png"),
+    type=click.Path(path_type=Path),
+    callback=with_suffix(".png"),
     show_default="IN with the suffix .png",
     help="Picture to write.",
 )
 @click.option(
     "--ev",
-    type=EV,
+    metavar="auto|N",
+    type=exposure,
     default="auto",
     show_default=True,
     help="Exposure value at ISO 100; auto finds one at which the sky is legible.",

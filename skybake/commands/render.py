@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 from typing import Any
 
 import click
@@ -21,21 +22,24 @@ from skybake.commands import parameters, report, request
 @click.option(
     "--sun",
     "sun_elevation",
-    type=parameters.ELEVATION,
+    metavar="ANGLE",
+    type=parameters.elevation,
     default="30deg",
     show_default=True,
     help="Geometric elevation of the sun's centre, -90deg to 90deg.",
 )
 @click.option(
     "--sun-azimuth",
-    type=parameters.BEARING,
+    metavar="ANGLE",
+    type=parameters.bearing,
     default="180deg",
     show_default=True,
     help="Compass bearing of the sun: 0deg is north, 90deg east.",
 )
 @click.option(
     "--altitude",
-    type=parameters.ALTITUDE,
+    metavar="LENGTH",
+    type=parameters.altitude,
     default="0m",
     show_default=True,
     help="Of the observer above the ground.",
@@ -49,8 +53,8 @@ from skybake.commands import parameters, report, request
 )
 @click.option(
     "--size",
-    type=parameters.Size(),
     metavar="WxH|EDGE",
+    type=parameters.size,
     show_default="2048x1024, or 1024 for a cubemap",
     help="Width and height of an equirect map, 2:1, or edge of a cubemap's face.",
 )
@@ -75,8 +79,8 @@ from skybake.commands import parameters, report, request
 )
 @click.option(
     "--ev",
-    type=float,
     metavar="N",
+    type=float,
     help="Let a pixel value of 1 stand for 1.2 * 2^N cd/m2 instead.",
 )
 @click.option(
@@ -102,14 +106,15 @@ from skybake.commands import parameters, report, request
 @click.option(
     "--method",
     type=click.Choice(parameters.METHODS),
-    default=parameters.METHODS[0],
+    default="hillaire",
     show_default=True,
-    help="Light transport: Hillaire's tables, or single scattering without tables.",
+    help="Light transport: all orders of scattering, Hillaire's closure, or single scattering.",
 )
 @click.option(
     *("-o", "--output"),
     metavar="FILE",
-    type=parameters.FilePath(".exr", ".hdr"),
+    type=click.Path(path_type=Path),
+    callback=parameters.with_suffix(".exr", ".hdr"),
     show_default="a name that says what it is, in the current folder",
     help="Map to write, .exr or .hdr; {face} in it is replaced for six files.",
 )
@@ -118,12 +123,14 @@ from skybake.commands import parameters, report, request
     is_flag=False,
     flag_value=request.BESIDE,
     metavar="[FILE.png]",
-    type=parameters.FilePath(".png"),
+    type=click.Path(path_type=Path),
+    callback=parameters.with_suffix(".png"),
     help="Also write a picture to look at; by default beside the map.",
 )
 @click.option(
     "--preview-ev",
-    type=parameters.EV,
+    metavar="auto|N",
+    type=parameters.exposure,
     show_default="auto",
     help="Its exposure value at ISO 100; auto finds a legible one.",
 )
@@ -135,8 +142,7 @@ from skybake.commands import parameters, report, request
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object.")
 @click.option("--quiet", is_flag=True, help="Print no progress and no summary.")
-@click.pass_context
-def render(context: click.Context, **options: Any) -> None:
+def render(**options: Any) -> None:
     """Bake a sky map.
 
     Angles are 5deg, 0.1rad, 30arcmin or bare degrees; lengths 2km, 1500m, 30000ft or bare metres.
@@ -150,7 +156,7 @@ def render(context: click.Context, **options: Any) -> None:
       skybake render --projection cubemap --size 512 --colorspace acescg --units nits
     """
     started = time.perf_counter()
-    request.check_together(context)
+    request.check_together(click.get_current_context())
     settings = request.map_settings(options)
 
     from skybake.baking import bake, default_path

@@ -37,8 +37,8 @@ def replace_when_whole(path: Path) -> Iterator[Path]:
     target = Path(os.path.realpath(path))
     # The name does not contain the target's, which may already be as long as names can be.
     temporary = target.with_name(f".skybake-{os.getpid()}-{secrets.token_hex(4)}{target.suffix}")
-    try:
-        _check(path, target)
+    check_target(path)
+    with _faults_of(path):
         try:
             yield temporary
             if target.exists():
@@ -48,10 +48,6 @@ def replace_when_whole(path: Path) -> Iterator[Path]:
             temporary.replace(target)
         finally:
             temporary.unlink(missing_ok=True)
-    except OutputError:
-        raise
-    except OSError as error:
-        raise OutputError(f"{path}: must be writable, got {error.strerror or error}") from error
 
 
 def write_error(path: Path, temporary: Path, message: str) -> OutputError:
@@ -62,8 +58,30 @@ def write_error(path: Path, temporary: Path, message: str) -> OutputError:
     return OutputError(f"{path}: must be written whole, got {reason or 'an unknown error'}")
 
 
+def check_target(path: Path) -> None:
+    """Raise what can be said of a target before anything is computed or written.
+
+    Raises
+    ------
+    OutputError
+        If a file cannot be written under that name.
+    """
+    with _faults_of(path):
+        _check(path, Path(os.path.realpath(path)))
+
+
+@contextmanager
+def _faults_of(path: Path) -> Iterator[None]:
+    """Turn an OSError into an OutputError about a path."""
+    try:
+        yield
+    except OutputError:
+        raise
+    except OSError as error:
+        raise OutputError(f"{path}: must be writable, got {error.strerror or error}") from error
+
+
 def _check(path: Path, target: Path) -> None:
-    """Raise what can be said before anything is computed or written."""
     if not target.parent.is_dir():
         raise OutputError(f"{path}: folder must exist, got {target.parent}")
     if target.is_dir():

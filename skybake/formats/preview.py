@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +11,7 @@ import numpy.typing as npt
 import OpenImageIO
 
 from skybake.errors import InputError
-from skybake.formats.partial import replace_when_whole, write_error
+from skybake.formats.partial import check_target, replace_when_whole, write_error
 from skybake.formats.spec import Tagged
 
 # Named, because the defaults of OpenColorIO follow $OCIO and the version of the library.
@@ -22,6 +24,8 @@ _VIEWS = {
 }
 VIEWS = tuple(_VIEWS)
 """Display transforms by name; the first is the default."""
+
+Show = Callable[[npt.NDArray[np.float32], Tagged, float], None]
 
 _END_OF_PNG = b"IEND\xaeB`\x82"
 
@@ -60,24 +64,41 @@ def write_preview(
     OutputError
         If the file cannot be written.
     """
+    with open_preview(path, view=view, max_width=max_width) as show:
+        show(pixels, colour_space, gain)
+
+
+@contextmanager
+def open_preview(path: Path, *, view: str = "aces2", max_width: int = 1024) -> Iterator[Show]:
+    """Yield ``show(pixels, colour_space, gain)``; the picture appears when the block ends.
+
+    Parameters and errors are those of `write_preview`.
+    """
+    check_preview(path, view)
+    with replace_when_whole(path) as temporary:
+
+        def show(pixels: npt.NDArray[np.float32], colour_space: Tagged, gain: float) -> None:
+            exposed = _shrink(pixels, max_width) * np.float32(gain)
+            _write_png(path, temporary, display_values(exposed, colour_space, view))
+
+        yield show
+
+
+def check_preview(path: Path, view: str) -> None:
+    """Raise what can be said of a preview before anything is computed.
+
+    Raises
+    ------
+    InputError
+        If the suffix or the view is not known.
+    OutputError
+        If a file cannot be written under that name.
+    """
     if path.suffix.lower() != ".png":
         raise InputError(f"{path}: suffix of a preview must be .png, got {path.suffix!r}")
     if view not in _VIEWS:
         raise InputError(f"view: must be one of {', '.join(VIEWS)}, got {view!r}")
-    shown = display_values(_shrink(pixels, max_width) * np.float32(gain), colour_space, view)
-    spec = OpenImageIO.ImageSpec(shown.shape[1], shown.shape[0], 3, "uint8")
-    spec["oiio:ColorSpace"] = "srgb_rec709_display"
-    spec["oiio:dither"] = 1
-    with replace_when_whole(path) as temporary:
-        output = OpenImageIO.ImageOutput.create(str(temporary))
-        if output is None:
-            raise write_error(path, temporary, OpenImageIO.geterror())
-        written = output.open(str(temporary), spec) and output.write_image(shown)
-        output.close()
-        message = output.geterror()
-        # The library's last block can fail to reach a full disk without a word.
-        if not written or message or not temporary.read_bytes().endswith(_END_OF_PNG):
-            raise write_error(path, temporary, message)
+    check_target(path)
 
 
 def display_values(
@@ -98,6 +119,21 @@ def display_values(
     # The ACES 1 view leaves values outside of the display, down to -1.
     values: npt.NDArray[np.float32] = np.clip(_pixels(shown), 0.0, 1.0)
     return values
+
+
+def _write_png(path: Path, temporary: Path, shown: npt.NDArray[np.float32]) -> None:
+    spec = OpenImageIO.ImageSpec(shown.shape[1], shown.shape[0], 3, "uint8")
+    spec["oiio:ColorSpace"] = "srgb_rec709_display"
+    spec["oiio:dither"] = 1
+    output = OpenImageIO.ImageOutput.create(str(temporary))
+    if output is None:
+        raise write_error(path, temporary, OpenImageIO.geterror())
+    written = output.open(str(temporary), spec) and output.write_image(shown)
+    output.close()
+    message = output.geterror()
+    # The library's last block can fail to reach a full disk without a word.
+    if not written or message or not temporary.read_bytes().endswith(_END_OF_PNG):
+        raise write_error(path, temporary, message)
 
 
 def _shrink(pixels: npt.NDArray[np.float32], max_width: int) -> npt.NDArray[np.float32]:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 from skybake.errors import InputError
 from skybake.formats.exr import ExrWriter
 from skybake.formats.hdr import HdrWriter
-from skybake.formats.partial import replace_when_whole
+from skybake.formats.partial import check_target, replace_when_whole
 from skybake.formats.spec import MapSpec
 
 MapWriter = ExrWriter | HdrWriter
@@ -42,8 +42,52 @@ def open_map(path: Path, spec: MapSpec) -> Iterator[MapWriter]:
     OutputError
         If the file cannot be written whole; the target is then as it was before.
     """
-    writer = _WRITERS.get(path.suffix.lower())
-    if writer is None:
+    with open_maps({path: spec}) as writers:
+        yield writers[path]
+
+
+@contextmanager
+def open_maps(specs: Mapping[Path, MapSpec]) -> Iterator[dict[Path, MapWriter]]:
+    """Open several map files, which appear when all of them are written.
+
+    Parameters
+    ----------
+    specs : mapping of Path to MapSpec
+        The files, see `open_map`.
+
+    Yields
+    ------
+    dict of Path to MapWriter
+        In the same order.
+
+    Raises
+    ------
+    InputError, OutputError
+        As `open_map`; all targets are then as they were before.
+    """
+    for path in specs:
+        check_map_path(path)
+    # Left in reverse: every file is closed and found whole before the first takes its name.
+    with ExitStack() as targets, ExitStack() as files:
+        writers: dict[Path, MapWriter] = {}
+        for path, spec in specs.items():
+            temporary = targets.enter_context(replace_when_whole(path))
+            writer: MapWriter = _WRITERS[path.suffix.lower()](path, temporary, spec)
+            writers[path] = writer
+            files.enter_context(writer)
+        yield writers
+
+
+def check_map_path(path: Path) -> None:
+    """Raise what can be said of a map's path before anything is computed.
+
+    Raises
+    ------
+    InputError
+        If the suffix names no format.
+    OutputError
+        If a file cannot be written under that name.
+    """
+    if path.suffix.lower() not in _WRITERS:
         raise InputError(f"{path}: suffix must be one of .exr, .hdr, got {path.suffix!r}")
-    with replace_when_whole(path) as temporary, writer(path, temporary, spec) as opened:
-        yield opened
+    check_target(path)
