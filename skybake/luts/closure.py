@@ -41,9 +41,7 @@ def close_field(cut: Truncation, columns: Array) -> DiffuseField:
         point itself loses the light that comes from far away.
     """
     shells = altitude_shells(cut.medium, SHELLS)
-    field = empty_field(
-        cut, altitude_shells(cut.medium, ALTITUDES), sun_angles(LAST_SUN_ANGLE), 0
-    )
+    field = empty_field(cut, altitude_shells(cut.medium, ALTITUDES), sun_angles(LAST_SUN_ANGLE), 0)
     one = field._replace(radiance=np.full_like(field.radiance, math.sqrt(4.0 * math.pi)))
     black = cut._replace(
         medium=cut.medium._replace(ground_albedo=np.zeros_like(cut.medium.ground_albedo))
@@ -54,7 +52,13 @@ def close_field(cut: Truncation, columns: Array) -> DiffuseField:
         r = cut.medium.r_bottom + max(h, 1e-6)
         mu, share = _split_directions(-math.sqrt(1.0 - (cut.medium.r_bottom / r) ** 2))
         radiance = _mean_radiance(
-            cut, shells, columns, field._replace(radiance=np.zeros_like(field.radiance)), r, mu, mu_s
+            cut,
+            shells,
+            columns,
+            field._replace(radiance=np.zeros_like(field.radiance)),
+            r,
+            mu,
+            mu_s,
         )
         second = np.tensordot(share, radiance, axes=1)
         same = np.full_like(mu, r), mu, np.ones_like(mu), mu

@@ -72,11 +72,7 @@ def fast_acos(x):
             + a
             * (
                 -0.0501743046
-                + a
-                * (
-                    0.0308918810
-                    + a * (-0.0170881256 + a * (0.0066700901 - a * 0.0012624911))
-                )
+                + a * (0.0308918810 + a * (-0.0170881256 + a * (0.0066700901 - a * 0.0012624911)))
             )
         )
     )
@@ -164,7 +160,7 @@ def add_diffuse(field, r_bottom, r, mu, mu_s, nu, samples, count, scratch, out):
                 node = field.radiance[i + side, j + q].reshape(moments * wavelengths)
                 for k in range(moments * wavelengths):
                     local[k] += weight * node[k]
-        _fill_scattering(field, samples, n, scratch.scattering)
+        fill_scattering(field, samples, n, scratch.scattering)
         mu_here = min(max((r * mu + t) / radius, -1.0), 1.0)
         fill_harmonics(field.harmonics, mu_here, scratch.polar)
         sines = math.sqrt((1.0 - mu_here * mu_here) * (1.0 - mu_s_here * mu_s_here))
@@ -182,7 +178,7 @@ def add_diffuse(field, r_bottom, r, mu, mu_s, nu, samples, count, scratch, out):
 
 
 @kernel
-def _fill_scattering(field, samples, n, out):
+def fill_scattering(field, samples, n, out):
     """Write weight * scattering coefficient * chi_l of a sample, shape (order + 1, wavelength)."""
     for degree in range(out.shape[0]):
         for k in range(out.shape[1]):

@@ -17,7 +17,7 @@ from skybake.optics.legendre import PEAK_NODES, Truncation
 from skybake.optics.medium import Array
 from skybake.transport.geometry import shadow_interval
 from skybake.transport.kernel import kernel, run_rows
-from skybake.transport.trace import allocate_samples, ray_limits, trace
+from skybake.transport.trace import MAX_ARC, allocate_samples, ray_limits, trace
 
 
 class RayLight(NamedTuple):
@@ -45,6 +45,8 @@ def trace_rays(
     mu: Array,
     mu_s: Array,
     nu: Array,
+    *,
+    max_arc: float = MAX_ARC,
 ) -> RayLight:
     """Integrate the light along rays, in parallel.
 
@@ -58,6 +60,8 @@ def trace_rays(
     mu_s, nu : ndarray of float64, shape (ray,)
         Cosines of the sun's zenith angle at the starts and of the angles
         between rays and sun.
+    max_arc : float, optional
+        Largest angle of a step, see `trace`. [rad]
 
     Returns
     -------
@@ -76,7 +80,18 @@ def trace_rays(
     def work(first: int, last: int) -> None:
         samples, scratch = allocate_samples(cut.medium), allocate_scratch(field)
         _trace_rays(
-            cut, PEAK_NODES, shells, columns, field, rays, samples, scratch, first, last, *light
+            cut,
+            PEAK_NODES,
+            shells,
+            max_arc,
+            columns,
+            field,
+            rays,
+            samples,
+            scratch,
+            first,
+            last,
+            *light,
         )
 
     run_rows(r.size, work, chunk=max(64, r.size // 64))
@@ -85,7 +100,19 @@ def trace_rays(
 
 @kernel
 def _trace_rays(
-    cut, nodes, shells, columns, field, rays, samples, scratch, first, last, single, diffuse
+    cut,
+    nodes,
+    shells,
+    max_arc,
+    columns,
+    field,
+    rays,
+    samples,
+    scratch,
+    first,
+    last,
+    single,
+    diffuse,
 ):
     medium = cut.medium
     sky = np.empty(diffuse.shape[1])
@@ -100,15 +127,15 @@ def _trace_rays(
         dark_first, _ = shadow_interval(r, mu, mu_s, nu, medium.r_bottom, t_first, t_last)
         is_lit = dark_first > t_last
         if not (is_lit and r == shared_r and mu == shared_mu):
-            count, length, hits_ground = trace(medium, shells, r, mu, mu_s, nu, samples)
+            count, length, hits_ground = trace(medium, shells, max_arc, r, mu, mu_s, nu, samples)
             shared_r = r if is_lit else -2.0
             shared_mu = mu
-        add_single_scattering(
-            cut, columns, nodes, r, mu_s, nu, samples, count, spectra, single[i]
-        )
-        add_diffuse(
-            field, medium.r_bottom, r, mu, mu_s, nu, samples, count, scratch, diffuse[i]
-        )
+        add_single_scattering(cut, columns, nodes, r, mu_s, nu, samples, count, spectra, single[i])
+        # A field on less than two altitudes is none.
+        if field.altitude.size > 1:
+            add_diffuse(
+                field, medium.r_bottom, r, mu, mu_s, nu, samples, count, scratch, diffuse[i]
+            )
         if hits_ground:
             mu_s_ground = (r * mu_s + length * nu) / medium.r_bottom
             fill_ground_irradiance(field, mu_s_ground, scratch.weights, sky)

@@ -13,6 +13,7 @@ from skybake.luts.field import (
     DiffuseField,
     altitude_weight,
     fill_ground_irradiance,
+    fill_scattering,
     sun_bins,
     sun_weights,
 )
@@ -22,7 +23,7 @@ from skybake.optics.legendre import Truncation, legendre_polynomials
 from skybake.optics.medium import Array
 from skybake.transport.kernel import kernel, run_rows
 from skybake.transport.shells import altitude_shells
-from skybake.transport.trace import Samples, allocate_samples, trace
+from skybake.transport.trace import allocate_samples, trace
 
 ORDER = 10
 """Highest harmonic of the diffuse field; forward peaks beyond it are truncated."""
@@ -30,10 +31,16 @@ ORDER = 10
 ALTITUDES = 24
 UPWARD = 10
 DOWNWARD = 5
-FIRST_SHELLS = 25
-SHELLS = 17
-TOLERANCE = 3e-4
+FIRST_SHELLS = 17
+SHELLS = 13
+TOLERANCE = 1e-3
 MAX_PASSES = 120
+ARC = math.radians(2.0)
+FIRST_ARC = math.radians(1.0)
+NEGLIGIBLE = 3e-4
+
+LANES = 16
+"""The solver pads wavelengths to a multiple: loops of known length become plain vector code."""
 
 # Spacing of the sun's zenith angles: fine where the planet's shadow passes through
 # the air, and not too wide at the zenith, near which moments go as sin(angle)**m.
@@ -116,11 +123,12 @@ def solve_field(cut: Truncation, columns: Array) -> DiffuseField:
     is iterated from L = L1. Anderson's method mixes the last passes, without
     which optical depth 10 takes 70 passes and 30 does not come to an end.
     """
+    wavelengths = cut.moments.shape[2]
+    cut = _pad_wavelengths(cut)
     grid = build_grid(cut)
     first = _first_order(cut, columns, grid)
     field = first
-    wavelengths = first.ground.shape[1]
-    mixing = Anderson(grid.sun_angle.size * wavelengths)
+    mixing = Anderson(first.ground.size)
     start = _state(first)
     state = start
     for _ in range(MAX_PASSES):
@@ -131,7 +139,7 @@ def solve_field(cut: Truncation, columns: Array) -> DiffuseField:
         # A column far behind the shadow holds rounding errors of the lit ones.
         matters = np.linalg.norm(image, axis=1) > 1e-9 * np.linalg.norm(image, axis=1).max()
         if change[matters].max() < TOLERANCE:
-            return _field(first, image)
+            return _keep_wavelengths(_field(first, image), wavelengths)
         state = mixing.step(state, image)
         field = _field(first, state)
     raise InputError(
@@ -141,9 +149,36 @@ def solve_field(cut: Truncation, columns: Array) -> DiffuseField:
     )
 
 
-def _split_directions(
-    r_bottom: float, h: float, upward: int, downward: int
-) -> tuple[Array, Array]:
+def _pad_wavelengths(cut: Truncation) -> Truncation:
+    """Repeat the last wavelength until their number is a multiple of `LANES`."""
+    last = cut.moments.shape[2] - 1
+    index = np.minimum(np.arange(-(-(last + 1) // LANES) * LANES), last)
+    medium = cut.medium
+    return cut._replace(
+        medium=medium._replace(
+            scattering=np.ascontiguousarray(medium.scattering[:, index]),
+            extinction=np.ascontiguousarray(medium.extinction[:, index]),
+            phase=np.ascontiguousarray(medium.phase[:, :, index]),
+            ground_albedo=medium.ground_albedo[index],
+        ),
+        moments=np.ascontiguousarray(cut.moments[:, :, index]),
+        fraction=np.ascontiguousarray(cut.fraction[:, index]),
+        scattering=np.ascontiguousarray(cut.scattering[:, index]),
+        mixture=cut.mixture[index],
+        phase=np.ascontiguousarray(cut.phase[:, :, index]),
+    )
+
+
+def _keep_wavelengths(field: DiffuseField, count: int) -> DiffuseField:
+    """Drop what `_pad_wavelengths` added."""
+    return field._replace(
+        source=np.ascontiguousarray(field.source[:, :, :count]),
+        radiance=np.ascontiguousarray(field.radiance[..., :count]),
+        ground=np.ascontiguousarray(field.ground[:, :count]),
+    )
+
+
+def _split_directions(r_bottom: float, h: float, upward: int, downward: int) -> tuple[Array, Array]:
     """Gauss nodes in mu, apart above and below the horizon and crowded toward it."""
     mu_horizon = -math.sqrt(max(0.0, 1.0 - (r_bottom / (r_bottom + h)) ** 2))
     mu, weight = [], []
@@ -155,9 +190,7 @@ def _split_directions(
     return np.concatenate(mu), np.concatenate(weight)
 
 
-def empty_field(
-    cut: Truncation, altitude: Array, sun_angle: Array, order: int
-) -> DiffuseField:
+def empty_field(cut: Truncation, altitude: Array, sun_angle: Array, order: int) -> DiffuseField:
     """Field without light on given nodes."""
     harmonics = build_harmonics(order)
     wavelengths = cut.moments.shape[2]
@@ -178,7 +211,7 @@ def _first_order(cut: Truncation, columns: Array, grid: Grid) -> DiffuseField:
     """Moments of the light scattered or reflected exactly once."""
     base = cut._replace(peaked=cut.peaked[:0], phase=cut.medium.phase)
     constituents = base.phase.shape[0]
-    dark = empty_field(cut, grid.altitude[[0, -1]], grid.sun_angle, 0)
+    dark = empty_field(cut, grid.altitude[:1], grid.sun_angle, 0)
     shells = altitude_shells(cut.medium, FIRST_SHELLS)
     field = empty_field(cut, grid.altitude, grid.sun_angle, ORDER)
     degree = np.arange(ORDER + 1)
@@ -189,7 +222,15 @@ def _first_order(cut: Truncation, columns: Array, grid: Grid) -> DiffuseField:
         nu = mu * mu_s + np.sqrt(1.0 - mu**2) * np.sin(sun) * np.cos(azimuth)
         r = np.full(mu.size, _radius(cut, grid.altitude[i]))
         light = trace_rays(
-            base, shells, columns, dark, r, mu.ravel(), mu_s.ravel(), nu.ravel()
+            base,
+            shells,
+            columns,
+            dark,
+            r,
+            mu.ravel(),
+            mu_s.ravel(),
+            nu.ravel(),
+            max_arc=FIRST_ARC,
         )
         polynomials = legendre_polynomials(nu.ravel(), ORDER)
         radiance = light.diffuse
@@ -225,11 +266,13 @@ def _scatter(cut: Truncation, field: DiffuseField, grid: Grid) -> DiffuseField:
     """Scatter a field once more and transport it; the ground reflects its irradiance."""
     shells = altitude_shells(cut.medium, SHELLS)
     polar, sun, azimuth = grid.mu.shape[1], grid.sun_angle.size, grid.azimuth.size
+    suns = np.stack([np.cos(grid.sun_angle), np.sin(grid.sun_angle)], axis=1)
+    around = np.cos(grid.azimuth)
     out = np.zeros((grid.altitude.size, polar, sun, azimuth, field.ground.shape[1]), np.float32)
 
     def work(first: int, last: int) -> None:
         samples = allocate_samples(cut.medium)
-        _scatter_rows(cut.medium, shells, field, grid, samples, first, last, out)
+        _scatter_rows(cut.medium, shells, field, grid, suns, around, samples, first, last, out)
 
     run_rows(grid.altitude.size * polar, work, chunk=polar)
     scattered = field._replace(
@@ -241,50 +284,64 @@ def _scatter(cut: Truncation, field: DiffuseField, grid: Grid) -> DiffuseField:
 
 
 @kernel
-def _scatter_rows(medium, shells, field, grid, samples: Samples, first, last, out):
+def _scatter_rows(medium, shells, field, grid, suns, around, samples, first, last, out):
     """Radiance of one more scattering, for rays numbered altitude * polar + direction."""
-    polar, suns, azimuths, wavelengths = out.shape[1], out.shape[2], out.shape[3], out.shape[4]
-    order, moments = field.harmonics.order, field.harmonics.degree.size
-    fourier = np.empty((suns, order + 1, wavelengths), np.float32)
+    polar, wavelengths = out.shape[1], out.shape[4]
+    order = field.harmonics.order
+    fourier = np.empty((suns.shape[0], (order + 1) * wavelengths), np.float32)
     scattering = np.empty((order + 1, wavelengths), np.float32)
-    harmonic = np.empty(moments)
+    harmonic = np.empty(field.harmonics.degree.size)
     weights = np.empty(4)
+    terms = np.empty((order + 1) * wavelengths, np.float32)
     sky = np.empty(wavelengths)
+    whole = np.empty(wavelengths)
     for ray in range(first, last):
         i, a = ray // polar, ray % polar
         r = medium.r_bottom + max(grid.altitude[i], 1e-8)
         mu = grid.mu[i, a]
         # A sun in the zenith casts no shadow: the diffuse field knows the shadow already.
-        count, length, hits_ground = trace(medium, shells, r, mu, 1.0, mu, samples)
+        count, length, hits_ground = trace(medium, shells, ARC, r, mu, 1.0, mu, samples)
+        for k in range(wavelengths):
+            whole[k] = 0.0
+        for n in range(count):
+            fill_scattering(field, samples, n, scattering)
+            for k in range(wavelengths):
+                whole[k] += scattering[0, k]
         for n in range(count):
             radius, t = samples.radius[n], samples.distance[n]
+            fill_scattering(field, samples, n, scattering)
+            degrees = _count_degrees(scattering, whole)
+            if degrees == 0:
+                continue
             mu_here = min(max((r * mu + t) / radius, -1.0), 1.0)
             fill_harmonics(field.harmonics, mu_here, harmonic)
             low, u = altitude_weight(field.altitude, radius - medium.r_bottom)
-            for degree in range(order + 1):
-                for k in range(wavelengths):
-                    total = 0.0
-                    for c in range(field.source.shape[0]):
-                        total += samples.density[n, c] * field.source[c, degree, k]
-                    scattering[degree, k] = total * samples.weight[n, k]
-            _collapse_degrees(field, low, u, harmonic, scattering, fourier)
+            _collapse_degrees(field, low, u, harmonic, scattering, degrees, fourier)
             sine = math.sqrt(1.0 - mu_here * mu_here)
-            for j in range(suns):
-                mu_s, sine_s = math.cos(grid.sun_angle[j]), math.sin(grid.sun_angle[j])
-                for b in range(azimuths):
-                    nu = mu * mu_s + math.sqrt(1.0 - mu * mu) * sine_s * math.cos(grid.azimuth[b])
-                    mu_s_here = min(max((r * mu_s + t * nu) / radius, -1.0), 1.0)
+            for j in range(suns.shape[0]):
+                along = mu * suns[j, 0]
+                across = math.sqrt(1.0 - mu * mu) * suns[j, 1]
+                for b in range(around.size):
+                    nu = along + across * around[b]
+                    mu_s_here = min(max((r * suns[j, 0] + t * nu) / radius, -1.0), 1.0)
                     sines = sine * math.sqrt(1.0 - mu_s_here * mu_s_here)
                     cosine = 1.0 if sines < 1e-12 else (nu - mu_here * mu_s_here) / sines
                     cosine = min(max(cosine, -1.0), 1.0)
                     node = sun_weights(field.sun_angle, field.sun_bin, mu_s_here, weights)
-                    _add_azimuth(fourier, node, weights, cosine, out[i, a, j, b])
+                    _add_azimuth(
+                        fourier,
+                        node,
+                        weights,
+                        cosine,
+                        degrees * wavelengths,
+                        terms,
+                        out[i, a, j, b],
+                    )
         if hits_ground:
-            for j in range(suns):
-                mu_s, sine_s = math.cos(grid.sun_angle[j]), math.sin(grid.sun_angle[j])
-                for b in range(azimuths):
-                    nu = mu * mu_s + math.sqrt(1.0 - mu * mu) * sine_s * math.cos(grid.azimuth[b])
-                    mu_s_ground = (r * mu_s + length * nu) / medium.r_bottom
+            for j in range(suns.shape[0]):
+                for b in range(around.size):
+                    nu = mu * suns[j, 0] + math.sqrt(1.0 - mu * mu) * suns[j, 1] * around[b]
+                    mu_s_ground = (r * suns[j, 0] + length * nu) / medium.r_bottom
                     fill_ground_irradiance(field, min(max(mu_s_ground, -1.0), 1.0), weights, sky)
                     for k in range(wavelengths):
                         reflected = medium.ground_albedo[k] / math.pi * sky[k]
@@ -292,40 +349,59 @@ def _scatter_rows(medium, shells, field, grid, samples: Samples, first, last, ou
 
 
 @kernel
-def _collapse_degrees(field, low, u, harmonic, scattering, out):
-    """Sum over l of the scattered moments at one altitude, shape (sun, m, wavelength)."""
-    order = field.harmonics.order
-    upper = np.float32(u)
-    for j in range(out.shape[0]):
-        p = 0
-        for m in range(order + 1):
-            for k in range(out.shape[2]):
-                out[j, m, k] = 0.0
-            for degree in range(m, order + 1):
-                factor = np.float32(harmonic[p])
-                for k in range(out.shape[2]):
-                    below = field.radiance[low, j, p, k]
-                    above = field.radiance[low + 1, j, p, k]
-                    out[j, m, k] += factor * scattering[degree, k] * (below + upper * (above - below))
-                p += 1
+def _count_degrees(scattering, whole):
+    """Orders l of a sample that matter beside what all samples of the ray scatter."""
+    for degree in range(scattering.shape[0] - 1, -1, -1):
+        for k in range(whole.size):
+            if abs(scattering[degree, k]) > NEGLIGIBLE * whole[k]:
+                return degree + 1
+    return 0
 
 
 @kernel
-def _add_azimuth(fourier, node, weights, cosine, out):
+def _collapse_degrees(field, low, u, harmonic, scattering, degrees, out):
+    """Sum over l of the scattered moments at one altitude, shape (sun, m * wavelength)."""
+    order = field.harmonics.order
+    wavelengths = scattering.shape[1]
+    upper = np.float32(u)
+    for j in range(out.shape[0]):
+        p = 0
+        for m in range(degrees):
+            for block in range(0, wavelengths, LANES):
+                for k in range(block, block + LANES):
+                    out[j, m * wavelengths + k] = 0.0
+            for degree in range(m, degrees):
+                factor = np.float32(harmonic[p])
+                for block in range(0, wavelengths, LANES):
+                    for k in range(block, block + LANES):
+                        below = field.radiance[low, j, p, k]
+                        above = field.radiance[low + 1, j, p, k]
+                        out[j, m * wavelengths + k] += (
+                            factor * scattering[degree, k] * (below + upper * (above - below))
+                        )
+                p += 1
+            p += order + 1 - degrees
+
+
+@kernel
+def _add_azimuth(fourier, node, weights, cosine, size, terms, out):
     """Add a Fourier series in azimuth, interpolated between four sun angles."""
     a, b = np.float32(weights[0]), np.float32(weights[1])
     c, d = np.float32(weights[2]), np.float32(weights[3])
-    before, now = cosine, 1.0
-    for m in range(fourier.shape[1]):
-        factor = np.float32(now)
-        for k in range(out.size):
-            out[k] += factor * (
-                a * fourier[node, m, k]
-                + b * fourier[node + 1, m, k]
-                + c * fourier[node + 2, m, k]
-                + d * fourier[node + 3, m, k]
-            )
-        before, now = now, 2.0 * cosine * now - before
+    for p in range(size):
+        terms[p] = (
+            a * fourier[node, p]
+            + b * fourier[node + 1, p]
+            + c * fourier[node + 2, p]
+            + d * fourier[node + 3, p]
+        )
+    for block in range(0, out.size, LANES):
+        before, now = np.float32(cosine), np.float32(1.0)
+        twice = np.float32(2.0 * cosine)
+        for first in range(block, size, out.size):
+            for k in range(LANES):
+                out[block + k] += now * terms[first + k]
+            before, now = now, twice * now - before
 
 
 def _state(field: DiffuseField) -> Array:

@@ -101,7 +101,7 @@ def ray_limits(medium, r, mu):
 
 
 @kernel
-def trace(medium, shells, r, mu, mu_s, nu, samples):
+def trace(medium, shells, max_arc, r, mu, mu_s, nu, samples):
     """Fill `samples` along a ray and find where it ends.
 
     Parameters
@@ -110,6 +110,8 @@ def trace(medium, shells, r, mu, mu_s, nu, samples):
         The atmosphere.
     shells : ndarray of float64
         Altitudes at which steps end, ascending from the ground to the top. [km]
+    max_arc : float
+        Largest angle, seen from the planet's centre, that a step may cover. [rad]
     r, mu : float
         Start of the ray, inside the air or outside, and cosine of its zenith
         angle. [km]
@@ -127,7 +129,7 @@ def trace(medium, shells, r, mu, mu_s, nu, samples):
     Notes
     -----
     Steps end at shells, at the point closest to the planet, at the edges of the
-    planet's shadow, after half a degree of arc and after one optical depth.
+    planet's shadow, after `max_arc` and after one optical depth.
     Each has two Gauss-Legendre points, so that smooth integrands are integrated
     to fourth order and neither kinks of the profile nor the shadow's edge falls
     inside a step.
@@ -142,7 +144,7 @@ def trace(medium, shells, r, mu, mu_s, nu, samples):
     t_closest = -r * mu
     closest_squared = squared_closest_approach(r, mu)
     layer = _layer_at(shells, radius_at(r, mu, t) - medium.r_bottom, t < t_closest)
-    arc = MAX_ARC * medium.r_bottom
+    arc = max_arc * medium.r_bottom
     n = 0
     while t < t_last and n + 2 <= MAX_SAMPLES:
         descending = t < t_closest
