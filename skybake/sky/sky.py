@@ -9,12 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from skybake.errors import InputError
-from skybake.luts.closure import close_field
-from skybake.luts.field import DiffuseField
+from skybake.luts.atmosphere import Atmosphere, load_atmosphere
 from skybake.luts.ray import RayLight, trace_rays
-from skybake.luts.solver import ORDER, solve_field
-from skybake.luts.transmittance import build_columns
-from skybake.optics.legendre import Truncation, keep_peaks, truncate_peaks
 from skybake.optics.medium import Array, build_medium
 from skybake.optics.phase import eval_phase
 from skybake.optics.spectrum import star_irradiance
@@ -28,7 +24,6 @@ from skybake.sky.view import (
     table_directions,
 )
 from skybake.transport.march import march_rays
-from skybake.transport.shells import altitude_shells
 
 METHODS = ("full", "hillaire", "march")
 WAVELENGTHS = np.linspace(380.0, 720.0, 16)
@@ -157,7 +152,7 @@ class Sky:
             [sr⁻¹]
         """
         light = self._light(mu.ravel(), nu.ravel())
-        phase = eval_phase(self.cut.phase, nu.ravel())
+        phase = eval_phase(self._phase, nu.ravel())
         radiance = (light.single * phase).sum(axis=1) + light.diffuse
         return radiance.reshape(*mu.shape, -1)
 
@@ -186,7 +181,7 @@ class Sky:
         mu = np.cos(theta)
         nu = mu * math.cos(sun_zenith) + np.sin(theta) * math.sin(sun_zenith) * np.cos(phi)
         light = self._light(mu.ravel(), nu.ravel())
-        lobes = split_phase(self.cut.phase)
+        lobes = split_phase(self._phase)
         fold = np.einsum("cwq,wk->cwkq", lobes.weights, rgb_weights)
         table = np.tensordot(light.single, fold, axes=2)
         table[:, :, 0] += light.diffuse @ rgb_weights
@@ -204,27 +199,15 @@ class Sky:
         nu = np.clip(nu, -1.0, 1.0)
         if self.method == "march":
             return RayLight(*march_rays(self.medium, r, mu, mu_s, nu))
-        return trace_rays(self.cut, self.shells, self.columns, self.field, r, mu, mu_s, nu)
+        return trace_rays(*self.atmosphere, r, mu, mu_s, nu)
 
     @cached_property
-    def cut(self) -> Truncation:
-        """The atmosphere without forward peaks, and what restores them."""
-        if self.method == "full":
-            return truncate_peaks(self.medium, ORDER)
-        return keep_peaks(self.medium)
+    def atmosphere(self) -> Atmosphere:
+        """The tables of the air, which depend neither on the observer nor on the sun."""
+        # Marching needs none; its sun disc looks up the columns that all methods share.
+        return load_atmosphere(self.medium, "full" if self.method == "full" else "hillaire")
 
-    @cached_property
-    def shells(self) -> Array:
-        """Altitudes at which rays are cut into steps. [km]"""
-        return altitude_shells(self.medium)
-
-    @cached_property
-    def columns(self) -> Array:
-        """The atmosphere's table of `build_columns`."""
-        return build_columns(self.medium)
-
-    @cached_property
-    def field(self) -> DiffuseField:
-        """The light that was scattered before."""
-        solve = solve_field if self.method == "full" else close_field
-        return solve(self.cut, self.columns)
+    @property
+    def _phase(self) -> Array:
+        """Phase functions of the channels of `_light`, (channel, angle, wavelength)."""
+        return self.medium.phase if self.method == "march" else self.atmosphere.cut.phase

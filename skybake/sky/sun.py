@@ -79,7 +79,7 @@ class SunDisc:
         sky = self._sky
         columns = np.empty((zenith.size, sky.medium.extinction.shape[0]))
         visible = np.empty(zenith.size, np.bool_)
-        _fill_columns(sky.medium, sky.columns, sky.r, np.cos(zenith), columns, visible)
+        _fill_columns(sky.medium, sky.atmosphere.columns, sky.r, np.cos(zenith), columns, visible)
         transmittance: Array = np.exp(-columns @ sky.medium.extinction)
         return np.where(visible[:, None], transmittance, 0.0)
 

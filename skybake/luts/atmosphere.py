@@ -1,0 +1,167 @@
+"""All tables of an atmosphere: what depends neither on the observer nor on the sun.
+
+They are built once and kept on disk as plain arrays, named by everything that
+they depend on.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import zipfile
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from skybake.luts.closure import close_field
+from skybake.luts.field import DiffuseField, sun_bins
+from skybake.luts.harmonics import build_harmonics
+from skybake.luts.solver import ORDER, solve_field
+from skybake.luts.transmittance import build_columns
+from skybake.optics.legendre import Truncation, keep_peaks, truncate_peaks
+from skybake.optics.medium import Array, Medium
+from skybake.transport.kernel import cache_directory
+from skybake.transport.shells import altitude_shells
+
+LARGEST_STORE = 1 << 30
+"""Size beyond which the tables unused for longest are removed. [byte]"""
+
+
+class Atmosphere(NamedTuple):
+    """Tables that rays look up.
+
+    Attributes
+    ----------
+    cut : Truncation
+        The medium without forward peaks, and what restores them.
+    shells : ndarray of float64
+        Altitudes at which rays are cut into steps. [km]
+    columns : ndarray of float64
+        Columns toward the sun, see `build_columns`.
+    field : DiffuseField
+        The light that was scattered before.
+    """
+
+    cut: Truncation
+    shells: Array
+    columns: Array
+    field: DiffuseField
+
+
+def build_atmosphere(medium: Medium, method: str) -> Atmosphere:
+    """Build the tables of a medium.
+
+    Parameters
+    ----------
+    medium : Medium
+        The atmosphere.
+    method : {"full", "hillaire"}
+        All orders of scattering, or Hillaire's closure.
+
+    Raises
+    ------
+    InputError
+        If all orders were asked for and the air is optically too thick.
+    """
+    cut = truncate_peaks(medium, ORDER) if method == "full" else keep_peaks(medium)
+    columns = build_columns(medium)
+    solve = solve_field if method == "full" else close_field
+    return Atmosphere(cut, altitude_shells(medium), columns, solve(cut, columns))
+
+
+def load_atmosphere(medium: Medium, method: str) -> Atmosphere:
+    """Return the tables of a medium from disk, or build and keep them.
+
+    A file that is missing, cut short or damaged is made anew; where none can be
+    written the tables are built every time.
+    """
+    path = _path(medium, method)
+    if path is None:
+        return build_atmosphere(medium, method)
+    try:
+        with np.load(path, allow_pickle=False) as arrays:
+            atmosphere = _from_arrays(medium, dict(arrays))
+        # The time of last use decides what goes first when the folder is full.
+        os.utime(path)
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        atmosphere = build_atmosphere(medium, method)
+        _store(path, atmosphere)
+    return atmosphere
+
+
+def is_stored(medium: Medium, method: str) -> bool:
+    """Whether `load_atmosphere` would find a file."""
+    path = _path(medium, method)
+    return path is not None and path.exists()
+
+
+def _path(medium: Medium, method: str) -> Path | None:
+    """File of a medium's tables, named by its arrays and by the code that makes them."""
+    directory = cache_directory()
+    if directory is None:
+        return None
+    digest = hashlib.sha256(f"{method} {medium.r_bottom!r} {medium.r_top!r}".encode())
+    for array in medium[2:]:
+        digest.update(f"{array.shape}".encode() + np.ascontiguousarray(array).tobytes())
+    return directory / "atmospheres" / f"{digest.hexdigest()[:32]}.npz"
+
+
+def _to_arrays(atmosphere: Atmosphere) -> dict[str, Any]:
+    cut, field = atmosphere.cut, atmosphere.field
+    arrays = {f"cut_{name}": getattr(cut, name) for name in cut._fields if name != "medium"}
+    return arrays | {
+        "scaled_scattering": cut.medium.scattering,
+        "scaled_extinction": cut.medium.extinction,
+        "shells": atmosphere.shells,
+        "columns": atmosphere.columns,
+        "order": np.array(field.harmonics.order),
+        "altitude": field.altitude,
+        "sun_angle": field.sun_angle,
+        "source": field.source,
+        "radiance": field.radiance,
+        "ground": field.ground,
+    }
+
+
+def _from_arrays(medium: Medium, arrays: dict[str, Any]) -> Atmosphere:
+    cut_arrays = {name: arrays[f"cut_{name}"] for name in Truncation._fields if name != "medium"}
+    constituents = medium.scattering.shape[0]
+    scaled = medium._replace(
+        scattering=arrays["scaled_scattering"],
+        extinction=arrays["scaled_extinction"],
+        phase=cut_arrays["phase"][:constituents],
+    )
+    field = DiffuseField(
+        harmonics=build_harmonics(int(arrays["order"])),
+        altitude=arrays["altitude"],
+        sun_angle=arrays["sun_angle"],
+        sun_bin=sun_bins(arrays["sun_angle"]),
+        source=arrays["source"],
+        radiance=arrays["radiance"],
+        ground=arrays["ground"],
+    )
+    cut = Truncation(medium=scaled, **cut_arrays)
+    return Atmosphere(cut, arrays["shells"], arrays["columns"], field)
+
+
+def _store(path: Path, atmosphere: Atmosphere) -> None:
+    """Write tables beside their name and rename them; a full disk only costs the reuse."""
+    temporary = path.with_name(f".{path.stem}-{os.getpid()}.npz")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        np.savez(temporary, allow_pickle=False, **_to_arrays(atmosphere))
+        temporary.replace(path)
+        _remove_oldest(path.parent)
+    except OSError:
+        temporary.unlink(missing_ok=True)
+
+
+def _remove_oldest(folder: Path) -> None:
+    """Keep the folder below `LARGEST_STORE`."""
+    files = sorted(folder.glob("*.npz"), key=lambda file: file.stat().st_mtime, reverse=True)
+    total = 0
+    for file in files:
+        total += file.stat().st_size
+        if total > LARGEST_STORE:
+            file.unlink(missing_ok=True)
