@@ -225,7 +225,7 @@ def _directions(
         raise InputError(message)
     sun = (math.cos(sun_elevation), 0.0, math.sin(sun_elevation))
     x, y, z = np.sin(zenith) * np.cos(azimuth), np.sin(zenith) * np.sin(azimuth), np.cos(zenith)
-    return sun, [tuple(map(float, view)) for view in zip(x, y, z, strict=True)]
+    return sun, [(float(a), float(b), float(c)) for a, b, c in zip(x, y, z, strict=True)]
 
 
 def _samples_per_batch(samples: int) -> int:
@@ -237,7 +237,7 @@ def _samples_per_batch(samples: int) -> int:
 
 def _seed(seed: int, row: int) -> np.uint64:
     """Start of an independent stream of random numbers for each row."""
-    return np.random.SeedSequence([seed, row]).generate_state(1, np.uint64)[0]
+    return np.uint64(np.random.SeedSequence([seed, row]).generate_state(1, np.uint64)[0])
 
 
 def _mean_and_error(means: Array) -> tuple[Array, Array]:

@@ -34,8 +34,13 @@ TOWARD_SUN = 0.3
 GUIDED = 0.35
 """Share of a path's first turns drawn by the guide, such as toward the glow of twilight."""
 
+UNGUIDED = 0.2
+"""Share of vertices drawn as an unguided photon would be."""
+
 SURVIVAL = 0.3
 """Paths that promise less than this, relative to their first vertex, play Russian roulette."""
+
+LEAST_SURVIVAL = 0.1
 
 
 @kernel
@@ -46,7 +51,7 @@ def new_stretches(air):
 
 @kernel
 def weigh_stretches(air, guide, ray, h, mu_s, nu, lit, cumulative):
-    """Sum up how much light each stretch of the ray promises, the ground last.
+    """Give each stretch of the ray, and the ground last, a probability, as running sums.
 
     Parameters
     ----------
@@ -82,6 +87,17 @@ def weigh_stretches(air, guide, ray, h, mu_s, nu, lit, cumulative):
         total += math.exp(-cuts.depth[ray.segments]) * air.albedo * light
         cumulative[count] = total
         count += 1
+    if total <= 0.0:
+        return 0
+    # The guide may be wrong by any factor where light is scattered often; drawing some
+    # places as if all promised the same bounds what its errors can do to the weights.
+    unguided = 1.0 if ray.reaches_ground else -math.expm1(-cuts.depth[ray.segments])
+    for b in range(count):
+        passed = 1.0
+        if not (ray.reaches_ground and b == count - 1):
+            last = min((b + 1) * SEGMENTS_PER_STRETCH, ray.segments)
+            passed = -math.expm1(-cuts.depth[last])
+        cumulative[b] = (1.0 - UNGUIDED) * cumulative[b] / total + UNGUIDED * passed / unguided
     return count
 
 
@@ -116,9 +132,8 @@ def draw_vertex(air, ray, stretches, cumulative, u, state):
         -1 at the ground.
     """
     cuts = ray.cuts
-    total = cumulative[stretches - 1]
-    b = min(np.searchsorted(cumulative[:stretches], u * total, side="right"), stretches - 1)
-    probability = (cumulative[b] - (cumulative[b - 1] if b > 0 else 0.0)) / total
+    b = min(np.searchsorted(cumulative[:stretches], u, side="right"), stretches - 1)
+    probability = cumulative[b] - (cumulative[b - 1] if b > 0 else 0.0)
     if probability <= 0.0:
         return 0.0, 0.0, 0.0, 0
     if ray.reaches_ground and b == stretches - 1:
@@ -165,7 +180,7 @@ def follow(
     promised = 0.0
     order = 1
     while True:
-        if stretches == 0 or cumulative[stretches - 1] <= 0.0:
+        if stretches == 0:
             return radiance
         step_weight, s, h_vertex, shell = draw_vertex(air, ray, stretches, cumulative, u, state)
         weight *= step_weight
@@ -190,7 +205,7 @@ def follow(
         promise = weight * look_up(guide, guide.ambient, h, mu_s)
         if order == 1:
             promised = promise
-        survival = min(1.0, promise / (SURVIVAL * promised))
+        survival = min(1.0, max(LEAST_SURVIVAL, promise / (SURVIVAL * promised)))
         if survival < 1.0:
             if uniform(state) >= survival:
                 return radiance
