@@ -14,9 +14,12 @@ import numpy.typing as npt
 
 from skybake.luts.harmonics import Harmonics, fill_harmonics
 from skybake.optics.medium import Array
+from skybake.transport.exponential import fast_exp
 from skybake.transport.kernel import kernel
 
 ANGLE_BINS = 2048
+TWILIGHT_SLOPE = 40.0
+TWILIGHT_ONSET = math.radians(5.0)
 
 
 class DiffuseField(NamedTuple):
@@ -81,8 +84,23 @@ def fast_acos(x):
 
 
 @kernel
+def log_twilight(angle):
+    """Logarithm of how dark twilight is, roughly: 0 by day, then falling by 0.7 a degree."""
+    below = angle - 0.5 * math.pi
+    if below <= 0.0:
+        return 0.0
+    if below < TWILIGHT_ONSET:
+        return -TWILIGHT_SLOPE * below * below / (2.0 * TWILIGHT_ONSET)
+    return -TWILIGHT_SLOPE * (below - 0.5 * TWILIGHT_ONSET)
+
+
+@kernel
 def sun_weights(sun_angle, sun_bin, mu_s, out):
-    """First node and Lagrange weights of the four nodes around a sun's position."""
+    """First node and weights of the four nodes around a sun's position.
+
+    Lagrange's cubic through the values divided by exp(log_twilight), which differ
+    little from node to node even where twilight falls by half between them.
+    """
     angle = min(fast_acos(mu_s), sun_angle[-1])
     j = sun_bin[min(int(angle * (ANGLE_BINS / math.pi)), ANGLE_BINS - 1)]
     if angle > sun_angle[j + 2] and j + 4 < sun_angle.size:
@@ -93,6 +111,10 @@ def sun_weights(sun_angle, sun_bin, mu_s, out):
     out[1] = xa * xc * xd / ((b - a) * (b - c) * (b - d))
     out[2] = xa * xb * xd / ((c - a) * (c - b) * (c - d))
     out[3] = xa * xb * xc / ((d - a) * (d - b) * (d - c))
+    if d > 0.5 * math.pi:
+        here = log_twilight(angle)
+        for q in range(4):
+            out[q] *= fast_exp(here - log_twilight(sun_angle[j + q]))
     return j
 
 

@@ -44,8 +44,8 @@ LANES = 16
 
 # Spacing of the sun's zenith angles: fine where the planet's shadow passes through
 # the air, and not too wide at the zenith, near which moments go as sin(angle)**m.
-_SPACING_AT = (0.0, 50.0, 75.0, 86.0, 90.0, 104.0, 110.0, 125.0, 180.0)
-_SPACING = (10.0, 8.0, 5.0, 1.6, 0.8, 0.8, 1.5, 4.0, 10.0)
+_SPACING_AT = (0.0, 50.0, 75.0, 86.0, 90.0, 104.0, 112.0, 125.0, 180.0)
+_SPACING = (10.0, 8.0, 5.0, 1.6, 0.8, 0.8, 1.0, 4.0, 10.0)
 
 
 class Grid(NamedTuple):
