@@ -21,6 +21,7 @@ from skybake.transport.kernel import run_rows
 
 PROBE_ZENITHS = 192
 PROBE_AZIMUTHS = 256
+CELLS_AT_ONCE = 32768
 
 
 class Scene:
@@ -78,10 +79,13 @@ class Scene:
 
     def disc_flux(self, cells: Cells) -> Array:
         """Pixel value times solid angle that each cell of the disc adds, (cell, 3). [sr]"""
-        if cells.distance.size == 0:
-            return np.zeros((0, 3))
-        light = self.sun.radiance_per_irradiance(cells.zenith, cells.distance)
-        return (light * cells.solid_angle[:, None]) @ self.rgb_weights
+        flux = np.empty((cells.distance.size, 3))
+        # A sun in the zenith touches every column, and its spectra would fill the memory.
+        for first in range(0, len(flux), CELLS_AT_ONCE):
+            part = slice(first, first + CELLS_AT_ONCE)
+            light = self.sun.radiance_per_irradiance(cells.zenith[part], cells.distance[part])
+            flux[part] = (light @ self.rgb_weights) * cells.solid_angle[part, None]
+        return flux
 
     def sun_illuminance(self) -> tuple[float, float]:
         """Illuminance by the sun's disc, facing it and on the horizontal. [lx]"""

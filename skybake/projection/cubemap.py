@@ -16,7 +16,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from skybake.projection.equirect import CELLS_PER_RADIUS, MIN_CELLS_PER_TEXEL, Array, Cells
+from skybake.projection.equirect import CELLS_PER_RADIUS, Array, Cells, cover, subdivide
 
 FACES = ("px", "nx", "py", "ny", "pz", "nz")
 
@@ -35,7 +35,7 @@ CROSS_ORIGINS = {"py": (0, 1), "nx": (1, 0), "pz": (1, 1), "px": (1, 2), "nz": (
 
 
 def face_directions(face: str, edge: int, first: int = 0, last: int | None = None) -> Array:
-    """Unit vectors of the texels in rows first..last, shape (last - first, edge, 3)."""
+    """Return unit vectors of the texels in rows first..last, shape (last - first, edge, 3)."""
     u = (2.0 * np.arange(edge) + 1.0) / edge - 1.0
     v = u[first : edge if last is None else last, None]
     return _face_vectors(face, *np.broadcast_arrays(u, v))
@@ -49,12 +49,8 @@ def zenith_bearing(directions: Array) -> tuple[Array, Array]:
 
 def solid_angles(edge: int) -> Array:
     """Solid angles of a face's texels, shape (edge, edge); six faces make 4 pi. [sr]"""
-    corner = 2.0 * np.arange(edge + 1) / edge - 1.0
-    # The solid angle of a rectangle from the face's centre to a corner.
-    u, v = np.meshgrid(corner, corner)
-    area = np.arctan2(u * v, np.sqrt(u * u + v * v + 1.0))
-    size: Array = area[1:, 1:] - area[1:, :-1] - area[:-1, 1:] + area[:-1, :-1]
-    return size
+    texel = np.arange(edge)
+    return _texel_solid_angles(edge, texel[:, None], texel)
 
 
 def openexr_face(face: str, rows: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
@@ -95,36 +91,57 @@ def disc_cells(face: str, edge: int, zenith: float, bearing: float, radius: floa
             -math.sin(zenith) * math.cos(bearing),
         ]
     )
-    bounds = _disc_bounds(right @ centre, up @ centre, forward @ centre, radius)
-    count = max(MIN_CELLS_PER_TEXEL, math.ceil(2.0 / edge * CELLS_PER_RADIUS / radius))
-    axes = []
-    for low, high in bounds:
-        first = max(0, math.floor((low + 1.0) / 2.0 * edge))
-        last = min(edge, math.ceil((high + 1.0) / 2.0 * edge))
-        axes.append(first + (np.arange(max(0, last - first) * count) + 0.5) / count)
+    # Cells that the edge cuts may have their centres outside it.
+    reach = radius * (1.0 + 2.0 / CELLS_PER_RADIUS)
+    bounds = _disc_bounds(right @ centre, up @ centre, forward @ centre, reach)
+    axes, widths = zip(
+        *(subdivide(low + 1.0, high + 1.0, 2.0 / edge, radius, (0, edge)) for low, high in bounds),
+        strict=True,
+    )
     column, row = (grid.ravel() for grid in np.meshgrid(*axes))
     u, v = 2.0 * column / edge - 1.0, 2.0 * row / edge - 1.0
     vectors = _face_vectors(face, u, v)
     distance = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(vectors - centre, axis=-1), 1.0))
-    inside = distance < radius
-    u, v, distance = u[inside], v[inside], distance[inside]
-    texel = np.zeros((distance.size, 4), np.int64)
+    size = widths[0] * widths[1] / (1.0 + u * u + v * v) ** 1.5
+    distance, covered = cover(distance, radius, np.sqrt(size), size)
+    inside = covered > 0.0
+    texel = np.zeros((np.count_nonzero(inside), 4), np.int64)
     texel[:, 0] = row[inside].astype(np.int64) * edge + column[inside].astype(np.int64)
-    weight = np.zeros((distance.size, 4))
-    weight[:, 0] = 1.0 / solid_angles(edge).ravel()[texel[:, 0]] if distance.size else 1.0
+    weight = np.zeros(texel.shape)
+    weight[:, 0] = 1.0 / _texel_solid_angles(edge, *np.divmod(texel[:, 0], edge))
     return Cells(
         zenith=zenith_bearing(vectors[inside])[0],
-        distance=distance,
-        solid_angle=(2.0 / edge / count) ** 2 / (1.0 + u * u + v * v) ** 1.5,
+        distance=distance[inside],
+        solid_angle=covered[inside],
         texel=texel,
         weight=weight,
     )
 
 
+def _texel_solid_angles(
+    edge: int, row: npt.NDArray[np.int64], column: npt.NDArray[np.int64]
+) -> Array:
+    u, v = 2.0 * column / edge - 1.0, 2.0 * row / edge - 1.0
+    size: Array = (
+        _corner_solid_angle(u + 2.0 / edge, v + 2.0 / edge)
+        - _corner_solid_angle(u, v + 2.0 / edge)
+        - _corner_solid_angle(u + 2.0 / edge, v)
+        + _corner_solid_angle(u, v)
+    )
+    return size
+
+
+def _corner_solid_angle(u: Array, v: Array) -> Array:
+    """Solid angle of the rectangle from a face's centre to a corner, with its sign. [sr]"""
+    area: Array = np.arctan2(u * v, np.sqrt(u * u + v * v + 1.0))
+    return area
+
+
 def _face_vectors(face: str, u: Array, v: Array) -> Array:
     right, up, forward = (np.array(axis, dtype=float) for axis in _FRAMES[face])
-    vectors: Array = forward + u[..., None] * right - v[..., None] * up
-    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    vectors = forward + u[..., None] * right - v[..., None] * up
+    unit: Array = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return unit
 
 
 def _disc_bounds(

@@ -15,8 +15,11 @@ import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
 
-CELLS_PER_RADIUS = 12
-MIN_CELLS_PER_TEXEL = 4
+CELLS_PER_RADIUS = 48
+"""Cells to a disc's radius, or one to a texel where texels are smaller."""
+
+
+EVERYWHERE = (-math.inf, math.inf)
 
 
 class Cells(NamedTuple):
@@ -25,7 +28,8 @@ class Cells(NamedTuple):
     Attributes
     ----------
     zenith, distance, solid_angle : ndarray of float64, shape (cell,)
-        Zenith angles, angles from the disc's centre [rad], and sizes [sr].
+        Zenith angles, angles from the disc's centre [rad], and sizes [sr] of what
+        the disc covers of them.
     texel : ndarray of int, shape (cell, 4)
         Rows of `weight` in a flat image that each cell adds to.
     weight : ndarray of float64, shape (cell, 4)
@@ -50,7 +54,7 @@ def column_bearings(width: int) -> Array:
 
 
 def directions(width: int, height: int) -> Array:
-    """Unit vectors of all texels, shape (height, width, 3); +Y up, -Z north, +X east."""
+    """Return unit vectors of all texels, shape (height, width, 3); +Y up, -Z north, +X east."""
     zenith = row_zeniths(height)[:, None]
     bearing = column_bearings(width)
     return np.stack(
@@ -92,46 +96,96 @@ def disc_cells(width: int, height: int, zenith: float, bearing: float, radius: f
     that moves through a sequence does not flicker from texel to texel.
     """
     row_step, column_step = math.pi / height, 2.0 * math.pi / width
-    first = max(0, math.floor((zenith - radius) / row_step))
-    last = min(height, math.ceil((zenith + radius) / row_step))
-    rows = _subdivide(first, last, row_step, radius)
-    theta = rows * row_step
-    if math.sin(zenith) <= math.sin(radius):
-        column_first, column_last = 0, width
+    # Cells that the edge cuts may have their centres outside it.
+    reach = radius * (1.0 + 2.0 / CELLS_PER_RADIUS)
+    rows, sub_row = subdivide(zenith - reach, zenith + reach, row_step, radius, (0, height))
+    if math.sin(zenith) <= math.sin(reach):
+        low, high, borders = 0.0, 2.0 * math.pi, (0.0, float(width))
     else:
-        reach = math.asin(math.sin(radius) / math.sin(zenith))
-        column_first = math.floor((bearing - reach) / column_step)
-        column_last = math.ceil((bearing + reach) / column_step)
-    columns = _subdivide(
-        column_first, column_last, column_step, radius / max(math.sin(zenith), math.sin(radius))
+        half_width = math.asin(math.sin(reach) / math.sin(zenith))
+        low, high, borders = bearing - half_width, bearing + half_width, EVERYWHERE
+    columns, sub_column = subdivide(
+        low, high, column_step, radius / max(math.sin(zenith), math.sin(radius)), borders
     )
-    sub_row = row_step * (last - first) / rows.size
-    sub_column = column_step * (column_last - column_first) / columns.size
-    size = 2.0 * np.sin(theta) * math.sin(0.5 * sub_row) * sub_column
+    size = 2.0 * np.sin(rows * row_step) * math.sin(0.5 * sub_row) * sub_column
     row, column = (grid.ravel() for grid in np.meshgrid(rows, columns, indexing="ij"))
-    half_sine_squared = (
-        np.sin(0.5 * (row * row_step - zenith)) ** 2
-        + np.sin(row * row_step)
-        * math.sin(zenith)
-        * np.sin(0.5 * (column * column_step - bearing)) ** 2
-    )
+    theta, phi = row * row_step, column * column_step - bearing
+    chord = np.sin(theta) * math.sin(zenith) * np.sin(0.5 * phi) ** 2
+    half_sine_squared = np.sin(0.5 * (theta - zenith)) ** 2 + chord
     distance = 2.0 * np.arcsin(np.minimum(np.sqrt(half_sine_squared), 1.0))
-    inside = distance < radius
-    row, column, distance = row[inside], column[inside], distance[inside]
+    # Cells are far from square near the poles. Across the edge they measure their
+    # height and width times the slopes of the distance along each.
+    across = math.sin(zenith) * np.sin(phi)
+    along = np.sin(theta - zenith) + 2.0 * np.cos(theta) * math.sin(zenith) * np.sin(0.5 * phi) ** 2
+    extent = np.abs(along) * sub_row + np.abs(across) * np.sin(theta) * sub_column
+    extent /= np.maximum(np.sin(distance), 1e-12)
+    distance, covered = cover(distance, radius, extent, np.repeat(size, columns.size))
+    inside = covered > 0.0
+    row, column = row[inside], column[inside]
     texel, weight = _bilinear(width, height, row, column)
     return Cells(
-        zenith=row * row_step,
-        distance=distance,
-        solid_angle=np.repeat(size, columns.size)[inside],
+        zenith=theta[inside],
+        distance=distance[inside],
+        solid_angle=covered[inside],
         texel=texel,
         weight=weight,
     )
 
 
-def _subdivide(first: int, last: int, step: float, radius: float) -> Array:
-    """Centres of cells in texel units, at least `CELLS_PER_RADIUS` to the disc's radius."""
-    count = max(MIN_CELLS_PER_TEXEL, math.ceil(step * CELLS_PER_RADIUS / radius))
-    return first + (np.arange((last - first) * count) + 0.5) / count
+def cover(distance: Array, radius: float, extent: Array, solid_angle: Array) -> tuple[Array, Array]:
+    """Parts of cells that a disc covers.
+
+    Parameters
+    ----------
+    distance, radius : ndarray of float64, float
+        Angles of the cells' centres from the disc's centre, and the disc's radius. [rad]
+    extent, solid_angle : ndarray of float64, of the shape of `distance`
+        Widths of the cells in the direction of the centre [rad], and their sizes [sr].
+
+    Returns
+    -------
+    distance, solid_angle : ndarray of float64
+        Of the covered parts. A cell that the edge cuts counts by its share: all or
+        nothing would leave up to 2 % too much or too little in sum.
+    """
+    near, far = distance - 0.5 * extent, distance + 0.5 * extent
+    share = np.clip((radius - near) / np.maximum(extent, 1e-12), 0.0, 1.0)
+    # Limb darkening falls with the root of the distance from the edge, whose mean over
+    # a stretch that ends there is its value at 4/9 of the stretch.
+    middle: Array = np.where(far <= radius, distance, radius - 4.0 / 9.0 * (radius - near))
+    covered: Array = share * solid_angle
+    return middle, covered
+
+
+def subdivide(
+    low: float,
+    high: float,
+    step: float,
+    radius: float,
+    borders: tuple[float, float],
+) -> tuple[Array, float]:
+    """Cut a span into cells that are whole parts of texels.
+
+    Parameters
+    ----------
+    low, high, step : float
+        Ends of the span and width of a texel.
+    radius : float
+        The disc's, in the same unit; `CELLS_PER_RADIUS` cells or more make it up.
+    borders : (float, float)
+        First and last border of texels, between which the cells stay.
+
+    Returns
+    -------
+    centres : ndarray of float64
+        In texels.
+    width : float
+        Of a cell, in the unit of `step`.
+    """
+    count = math.ceil(step * CELLS_PER_RADIUS / radius)
+    first = math.floor(max(low / step, borders[0]) * count)
+    last = math.ceil(min(high / step, borders[1]) * count)
+    return (np.arange(first, last) + 0.5) / count, step / count
 
 
 def _bilinear(
@@ -147,8 +201,7 @@ def _bilinear(
     left, next_left = left % width, (left + 1) % width
     size = solid_angles(width, height)
     texel = np.stack(
-        [top * width + left, top * width + next_left]
-        + [(top + 1) * width + left, (top + 1) * width + next_left],
+        [y * width + x for y in (top, top + 1) for x in (left, next_left)],
         axis=1,
     )
     weight = np.stack(

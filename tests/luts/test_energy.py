@@ -70,8 +70,8 @@ def test_suns_fill_the_sphere():
 
 
 @pytest.mark.parametrize("h", [1e-6, 5.0, 60.0])
-@pytest.mark.parametrize("mu", [1.0, 0.5, 0.1, -0.2, -0.7, -1.0])
-@pytest.mark.parametrize("phase", PHASES)
+@pytest.mark.parametrize("mu", [1.0, 0.3, -0.1, -0.9])
+@pytest.mark.parametrize("phase", [pytest.param("isotropic", marks=pytest.mark.slow), "forward"])
 def test_white_furnace_is_even_within_one_percent(phase, mu, h):
     radiance = radiance_under_even_light(sky_of(phase, "full"), h, mu)
     np.testing.assert_allclose(radiance, 1.0, atol=0.01)
