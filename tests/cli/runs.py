@@ -1,0 +1,43 @@
+"""Ways to run the command line: in this process, and in one of its own."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from click.testing import CliRunner
+
+import skybake
+from skybake.cli import main
+
+PACKAGES = str(Path(skybake.__file__).parents[1])
+SMALL = ("--size", "64x32")
+
+
+def invoke(*arguments):
+    """Run in this process; click's result has output, stdout, stderr and exit_code."""
+    return CliRunner().invoke(main, [str(argument) for argument in arguments])
+
+
+def start(*arguments, code="from skybake.cli import main; main()", wrapper=(), **keywords):
+    """Start a process with the command line, or with other code that has its arguments."""
+    return subprocess.Popen(
+        [*wrapper, sys.executable, "-c", code, *map(str, arguments)],
+        env=os.environ | {"PYTHONPATH": PACKAGES} | keywords.pop("env", {}),
+        stdout=keywords.pop("stdout", subprocess.PIPE),
+        stderr=subprocess.PIPE,
+        text=True,
+        **keywords,
+    )
+
+
+def run(*arguments, **keywords):
+    """Run in a process of its own; returns exit status, stdout and stderr."""
+    process = start(*arguments, **keywords)
+    output, errors = process.communicate(timeout=240)
+    return process.returncode, output, errors
+
+
+def listing(folder):
+    """Names in a folder, hidden ones too."""
+    return sorted(path.name for path in folder.iterdir())

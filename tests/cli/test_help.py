@@ -1,0 +1,150 @@
+"""Help is quick, complete and true."""
+
+import dataclasses
+import json
+import re
+from pathlib import Path
+
+import click
+import pytest
+
+import skybake
+from skybake.baking import MapSettings, settings
+from skybake.cli import main
+from skybake.colour.exposure import UNITS
+from skybake.colour.space import COLOUR_SPACES
+from skybake.commands import parameters
+from skybake.commands.render import render
+from skybake.formats.preview import VIEWS
+from skybake.preset import preset_names
+from skybake.sky.sky import METHODS
+from tests.cli.runs import invoke, run
+
+DOCUMENT = Path(__file__).parents[2] / "docs" / "cli.md"
+HEAVY = {"numpy", "numba", "OpenImageIO", "scipy", "colour", "llvmlite"}
+
+AFTER = """
+import json, sys
+from skybake.cli import main
+try:
+    main(sys.argv[1:])
+except SystemExit as end:
+    print(json.dumps([end.code, sorted(sys.modules)]))
+"""
+
+
+def _commands(group, path=()):
+    for name, command in group.commands.items():
+        if isinstance(command, click.Group):
+            yield from _commands(command, (*path, name))
+        else:
+            yield (*path, name), command
+
+
+COMMANDS = list(_commands(main))
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("--help",),
+        ("--version",),
+        ("render", "--help"),
+        ("preview", "--help"),
+        ("presets", "list"),
+        ("presets", "show", "mars"),
+        ("render", "--size", "64x63"),
+        ("render", "--sun", "95deg"),
+        ("render", "--colorspace", "srgb"),
+    ],
+)
+def test_help_presets_and_usage_faults_load_nothing_heavy(arguments):
+    _, output, errors = run(*arguments, code=AFTER)
+    _, modules = json.loads(output.splitlines()[-1])
+    assert not HEAVY & set(modules), errors
+    # A bare interpreter with click has about 150 of them; numpy alone adds 130.
+    assert len(modules) < 230
+
+
+def test_choices_are_those_of_the_engine():
+    assert parameters.PROJECTIONS == settings.PROJECTIONS
+    assert parameters.CUBE_LAYOUTS == settings.CUBE_LAYOUTS
+    assert tuple(COLOUR_SPACES) == parameters.COLOUR_SPACES
+    assert parameters.UNITS == UNITS
+    assert parameters.PIXELS == settings.PIXELS
+    assert parameters.SUN_DISCS == settings.SUN_DISCS
+    assert parameters.METHODS == METHODS
+    assert parameters.VIEWS == VIEWS
+
+
+def test_defaults_are_those_of_the_engine():
+    context = render.make_context("render", [])
+    given = {key: value for key, value in context.params.items() if value is not None}
+    engine = dataclasses.asdict(MapSettings())
+    shared = given.keys() & engine.keys()
+    assert {key: given[key] for key in shared} == {key: engine[key] for key in shared}
+    assert len(shared) == 8
+    shown = {p.name: p.show_default for p in render.params if isinstance(p.show_default, str)}
+    for key in engine.keys() & shown.keys():
+        assert shown[key] == engine[key]
+
+
+@pytest.mark.parametrize(("path", "command"), COMMANDS)
+def test_every_option_is_documented_and_every_documented_option_exists(path, command):
+    _, heading, rest = DOCUMENT.read_text("utf-8").partition(f"## skybake {' '.join(path)}\n")
+    assert heading
+    section = rest.partition("\n## ")[0]
+    documented = set(re.findall(r"^\| `(?:-o, )?(--[a-z-]+)", section, re.MULTILINE))
+    options = {p.opts[-1] for p in command.params if isinstance(p, click.Option)}
+    assert documented == options
+    for option in command.params:
+        if isinstance(option, click.Option) and isinstance(option.type, click.Choice):
+            for choice in option.type.choices:
+                assert f"`{choice}`" in section
+
+
+@pytest.mark.parametrize(("path", "command"), [((), main), *COMMANDS])
+def test_every_command_and_option_has_a_help(path, command):
+    result = invoke(*path, "--help")
+    assert result.exit_code == 0
+    assert command.help
+    assert all(len(line) <= 100 for line in result.output.splitlines())
+    assert all(p.help for p in command.params if isinstance(p, click.Option))
+
+
+def test_the_version_is_that_of_the_package():
+    assert invoke("--version").stdout == f"skybake {skybake.__version__}\n"
+
+
+def test_without_a_command_help_is_shown_as_wrong_usage():
+    result = invoke()
+    assert result.exit_code == 2
+    assert "Usage: skybake" in result.stderr
+
+
+def test_the_presets_are_listed_with_their_titles():
+    lines = invoke("presets", "list").stdout.splitlines()
+    assert [line.split()[0] for line in lines] == preset_names()
+    assert lines[0].endswith("Earth: clear continental air over grassland")
+
+
+def test_a_shown_preset_is_its_file():
+    shown = invoke("presets", "show", "mars").stdout
+    assert shown.startswith("title = ")
+    assert "[constituents.dust]" in shown
+
+
+def test_public_names_are_there_and_others_are_not():
+    for name in skybake.__all__:
+        assert getattr(skybake, name) is not None
+    assert callable(skybake.bake)
+    assert set(skybake.__all__) <= set(dir(skybake))
+    with pytest.raises(AttributeError, match="has no attribute 'bakery'"):
+        _ = skybake.bakery
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_the_shells_get_their_completion(shell):
+    status, output, _ = run(env={"_SKYBAKE_COMPLETE": f"{shell}_source"})
+    assert status == 0
+    assert "_SKYBAKE_COMPLETE" in output

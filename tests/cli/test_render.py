@@ -1,0 +1,212 @@
+"""What a render writes and tells."""
+
+import json
+import math
+from pathlib import Path
+
+import OpenImageIO
+import pytest
+
+from skybake.baking import MapSettings, bake
+from skybake.formats.reader import read_image
+from tests.cli.runs import SMALL, invoke, listing
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def render(*arguments):
+    """Render quietly with --json and return the object."""
+    result = invoke("render", *arguments, "--json", "--quiet")
+    assert result.exit_code == 0, result.output
+    assert result.stderr == ""
+    assert result.stdout.count("\n") == 1
+    return json.loads(result.stdout)
+
+
+def test_json_says_what_was_baked(folder):
+    told = render(*SMALL, "--sun", "30deg", "--sun-azimuth", "90deg", "-o", "a.exr")
+    baked = bake("earth", "b.exr", MapSettings(width=64, sun_azimuth=math.pi / 2))
+    assert told["files"] == ["a.exr"]
+    assert told["preset"] == "earth"
+    assert told["sun_direction"] == pytest.approx([math.sqrt(0.75), 0.5, 0.0], abs=1e-12)
+    assert told["direct_illuminance_lux"] == baked.direct_illuminance
+    assert told["direct_normal_illuminance_lux"] == baked.direct_normal_illuminance
+    assert told["sky_illuminance_lux"] == baked.sky_illuminance
+    assert told["white_luminance_cd_m2"] == pytest.approx(1.2 * 2**15)
+    assert (told["projection"], told["colorspace"]) == ("equirect", "lin_rec709")
+    assert told["pixel"] == "half"
+    assert told["clamped"] == 0
+    assert (told["preview"], told["preview_ev"]) == (None, None)
+    assert 0.0 < told["seconds"] < 300.0
+    assert len(told) == 14
+
+
+def test_the_file_carries_what_json_says():
+    told = render(*SMALL, "--sun", "0.1rad", "--units", "nits", "--preset", "mars", "-o", "a.exr")
+    _, attributes = read_image(Path("a.exr"))
+    for key, name in {
+        "sun_direction": "sunDirection",
+        "direct_illuminance_lux": "directIlluminance",
+        "direct_normal_illuminance_lux": "directNormalIlluminance",
+        "sky_illuminance_lux": "skyIlluminance",
+    }.items():
+        assert attributes[f"skybake:{name}"] == pytest.approx(told[key], rel=1e-6, abs=1e-7)
+    assert attributes["whiteLuminance"] == told["white_luminance_cd_m2"] == 1.0
+    assert attributes["skybake:preset"] == told["preset"] == "mars"
+    recipe = json.loads(attributes["skybake:recipe"])
+    assert recipe["map"]["sun_elevation_deg"] == pytest.approx(math.degrees(0.1))
+    assert recipe["preset"]["planet"]["radius_km"] == 3389.5
+
+
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [
+        ((), "earth_sun+30.00deg_equirect.exr"),
+        (("--sun", "-4deg"), "earth_sun-04.00deg_equirect.exr"),
+        (("--sun=-4",), "earth_sun-04.00deg_equirect.exr"),
+        (("--sun", "5400arcmin"), "earth_sun+90.00deg_equirect.exr"),
+        (("--altitude", "30000ft"), "earth_sun+30.00deg_9144m_equirect.exr"),
+        (("--preset", "mars", "--altitude", "2km"), "mars_sun+30.00deg_2000m_equirect.exr"),
+    ],
+)
+def test_the_default_name_says_what_it_is_and_lies_in_the_current_folder(folder, arguments, name):
+    assert render(*SMALL, *arguments)["files"] == [name]
+    assert listing(folder) == [name]
+
+
+def test_a_preset_of_ones_own_gives_its_name(folder):
+    Path("dusty.toml").write_text(invoke("presets", "show", "mars").stdout, encoding="utf-8")
+    told = render(*SMALL, "--preset", "dusty.toml", "--sun", "5")
+    assert told["preset"] == "dusty"
+    assert listing(folder) == ["dusty.toml", "dusty_sun+05.00deg_equirect.exr"]
+
+
+FACES = ["px", "nx", "py", "ny", "pz", "nz"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "names", "size"),
+    [
+        (("-o", "a.exr"), [f"a_{face}.exr" for face in FACES], (16, 16)),
+        (("-o", "{face}.hdr"), [f"{face}.hdr" for face in FACES], (16, 16)),
+        (("-o", "a.exr", "--cube-layout", "cross"), ["a.exr"], (64, 48)),
+        (("-o", "a.hdr", "--cube-layout", "cross"), ["a.hdr"], (64, 48)),
+        (("-o", "a.exr", "--cube-layout", "exr"), ["a.exr"], (16, 96)),
+    ],
+)
+def test_a_cubemap_is_six_files_a_cross_or_a_column(folder, arguments, names, size):
+    told = render("--projection", "cubemap", "--size", 16, *arguments)
+    assert told["files"] == names
+    assert listing(folder) == sorted(names)
+    for name in names:
+        spec = OpenImageIO.ImageInput.open(name).spec()
+        assert (spec.width, spec.height) == size
+    assert told["pixel"] == ("half" if names[0].endswith(".exr") else "rgbe")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [
+        (("-o", "a.exr", "--preview"), "a.png"),
+        (("-o", "a.exr", "--preview", "b.png"), "b.png"),
+        (("--preview", "--sun", "-4deg"), "earth_sun-04.00deg_equirect.png"),
+        (
+            ("--preview", "--projection", "cubemap", "--size", "16", "-o", "{face}.exr"),
+            "preview.png",
+        ),
+    ],
+)
+def test_a_preview_lies_beside_the_map_unless_it_has_a_name(folder, arguments, name):
+    size = () if "--size" in arguments else SMALL
+    told = render(*size, *arguments)
+    assert told["preview"] == name
+    assert name in listing(folder)
+    assert Path(name).read_bytes()[:4] == b"\x89PNG"
+
+
+def test_a_preview_takes_the_exposure_that_is_asked_for():
+    told = render(*SMALL, "-o", "a.exr", "--preview", "--preview-ev", "11.5", "--view", "aces1")
+    assert told["preview_ev"] == 11.5
+    found = render(*SMALL, "-o", "a.exr", "--preview", "b.png", "--preview-ev", "auto")
+    assert 10.0 < found["preview_ev"] < 16.0
+    assert Path("a.png").read_bytes() != Path("b.png").read_bytes()
+
+
+def test_a_map_is_shown_later_as_it_would_have_been_at_once():
+    told = render(*SMALL, "-o", "a.exr", "--pixel", "float", "--preview", "at_once.png")
+    result = invoke("preview", "a.exr", "-o", "later.png", "--ev", told["preview_ev"])
+    assert result.exit_code == 0, result.output
+    assert result.stdout == f"later.png  exposed for EV {told['preview_ev']:.2f}\n"
+    at_once, later = (
+        OpenImageIO.ImageBuf(name).get_pixels(OpenImageIO.FLOAT)
+        for name in ("at_once.png", "later.png")
+    )
+    # Dithered eight bits of the same floats.
+    assert abs(at_once - later).max() <= 1.01 / 255
+
+
+def test_options_reach_the_map():
+    told = render(
+        *("--size", "64x32", "--colorspace", "xyz", "--ev", "3", "--pixel", "float"),
+        *("--compression", "zip:9", "--sun-disc", "exclude", "--clamp-negative"),
+        *("--method", "march", "--altitude", "1km", "-o", "a.exr"),
+    )
+    recipe = json.loads(read_image(Path("a.exr"))[1]["skybake:recipe"])["map"]
+    assert told["white_luminance_cd_m2"] == pytest.approx(9.6)
+    assert recipe == {
+        "sun_elevation_deg": pytest.approx(30.0),
+        "sun_azimuth_deg": 180.0,
+        "altitude_m": 1000.0,
+        "projection": "equirect",
+        "width": 64,
+        "cube_layout": None,
+        "colorspace": "xyz",
+        "white_luminance_cd_m2": pytest.approx(9.6),
+        "pixel": "float",
+        "compression": "zip:9",
+        "sun_disc": "exclude",
+        "clamp_negative": True,
+        "method": "march",
+    }
+
+
+def test_people_are_told_files_and_light_with_units():
+    result = invoke("render", *SMALL, "-o", "a.exr", "--preview")
+    told = render(*SMALL, "-o", "a.exr")
+    file, picture, light = result.stdout.splitlines()
+    assert file == "a.exr"
+    assert picture.startswith("a.png  exposed for EV 1")
+    assert light.startswith(f"sun {told['direct_illuminance_lux']:.5g} lx ")
+    assert f"sky {told['sky_illuminance_lux']:.5g} lx" in light
+    assert "1.0 = 39321.6 cd/m2" in light
+    assert result.stderr == "skybake: baking a.exr\n"
+
+
+def test_quiet_says_nothing_and_json_nothing_else():
+    assert invoke("render", *SMALL, "-o", "a.exr", "--quiet").output == ""
+    result = invoke("render", *SMALL, "-o", "a.exr", "--json")
+    assert json.loads(result.stdout)["files"] == ["a.exr"]
+
+
+def test_negative_values_that_a_radiance_picture_loses_are_counted():
+    arguments = (*SMALL, "--sun", "-6deg", "--sun-disc", "exclude")
+    told = render(*arguments, "-o", "a.hdr")
+    whole = render(*arguments, "-o", "a.exr", "--pixel", "float")
+    pixels, _ = read_image(Path("a.exr"))
+    assert whole["clamped"] == 0
+    assert told["clamped"] == (pixels < 0.0).sum()
+    clamped = render(*arguments, "-o", "b.exr", "--clamp-negative")
+    assert clamped["clamped"] == 0
+    assert read_image(Path("b.exr"))[0].min() >= 0.0
+
+
+def test_a_file_is_replaced(folder):
+    render(*SMALL, "-o", "a.exr")
+    before = Path("a.exr").read_bytes()
+    render(*SMALL, "--sun", "60", "-o", "a.exr")
+    assert Path("a.exr").read_bytes() != before
+    assert listing(folder) == ["a.exr"]
