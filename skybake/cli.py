@@ -13,6 +13,7 @@ import click
 import skybake
 from skybake.commands.presets import presets
 from skybake.commands.preview import preview
+from skybake.commands.probe import probe
 from skybake.commands.render import render
 from skybake.errors import SkybakeError
 
@@ -88,3 +89,4 @@ def main() -> None:
 main.add_command(render)
 main.add_command(presets)
 main.add_command(preview)
+main.add_command(probe)

@@ -24,6 +24,18 @@ PROBE_AZIMUTHS = 256
 CELLS_AT_ONCE = 32768
 
 
+def luminous_weights(sky: Sky) -> Array:
+    """Weights from radiance per unit irradiance [sr⁻¹] to XYZ [cd m⁻²], (wavelength, 3)."""
+    star = star_spectrum(sky.planet.star)
+    if sky.planet.rendering == "spectral":
+        return xyz_weights(sky.wavelengths, *star)
+    # Three wavelengths stand for R, G and B, and the sun for white of its illuminance.
+    illuminance = xyz_weights(WAVELENGTHS, *star)[:, 1].sum()
+    xyz_from_rgb = np.linalg.inv(rgb_from_xyz(find_colour_space("lin_rec709")))
+    weights: Array = illuminance * xyz_from_rgb.T
+    return weights
+
+
 class Scene:
     """What a map shows, ready to be evaluated at pixels.
 
@@ -51,14 +63,7 @@ class Scene:
     @cached_property
     def xyz_weights(self) -> Array:
         """XYZ [cd m⁻²] is the radiance per unit irradiance times these, (wavelength, 3)."""
-        star = star_spectrum(self.planet.star)
-        if self.planet.rendering == "spectral":
-            return xyz_weights(self.sky.wavelengths, *star)
-        # Three wavelengths stand for R, G and B, and the sun for white of its illuminance.
-        illuminance = xyz_weights(WAVELENGTHS, *star)[:, 1].sum()
-        xyz_from_rgb = np.linalg.inv(rgb_from_xyz(find_colour_space("lin_rec709")))
-        weights: Array = illuminance * xyz_from_rgb.T
-        return weights
+        return luminous_weights(self.sky)
 
     @cached_property
     def rgb_weights(self) -> Array:

@@ -1,0 +1,214 @@
+"""Radiance in given directions: the answer that maps are made of, as numbers."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from skybake.baking.scene import Scene, luminous_weights
+from skybake.baking.settings import MapSettings
+from skybake.errors import InputError
+from skybake.optics.medium import Array
+from skybake.preset import Planet
+from skybake.sky.sky import WAVELENGTHS, Sky
+
+COLUMNS = ("view_zenith_deg", "relative_azimuth_deg")
+REFERENCE = "reference"
+
+
+@dataclass(frozen=True)
+class Directions:
+    """Directions to look in.
+
+    Attributes
+    ----------
+    text : tuple of (str, str)
+        Zenith angle and azimuth relative to the sun's as given, in degrees.
+    zenith, azimuth : ndarray of float64, shape (direction,)
+        The same. [rad]
+    """
+
+    text: tuple[tuple[str, str], ...]
+    zenith: Array
+    azimuth: Array
+
+
+def read_directions(where: str, lines: Iterable[str]) -> Directions:
+    """Read directions from CSV with the columns of `COLUMNS`; others are ignored.
+
+    Raises
+    ------
+    InputError
+        If a column is missing, or a value is no number or not a zenith angle.
+    """
+    rows = csv.DictReader(lines)
+    found = [name.strip() for name in rows.fieldnames or ()]
+    missing = [name for name in COLUMNS if name not in found]
+    if missing:
+        raise InputError(
+            f"{where}: must have the columns {', '.join(COLUMNS)}, got "
+            f"{', '.join(found) or 'nothing'}"
+        )
+    rows.fieldnames = found
+    text = []
+    for row in rows:
+        values = [(row[name] or "").strip() for name in COLUMNS]
+        for name, value in zip(COLUMNS, values, strict=True):
+            _check_angle(f"{where}: line {rows.line_num}: {name}", name, value)
+        text.append((values[0], values[1]))
+    if not text:
+        raise InputError(f"{where}: must hold at least one direction, got none")
+    return _directions(text)
+
+
+def default_directions(sun_elevation: float) -> Directions:
+    """The circle at the sun's elevation (10 deg if it has set) and the sun's vertical plane."""
+    zenith = 90.0 - max(round(math.degrees(sun_elevation), 6), 10.0)
+    circle = [(f"{zenith:g}", f"{azimuth}") for azimuth in range(0, 181, 15)]
+    plane = [(f"{angle}", "0") for angle in range(85, -1, -5)]
+    plane += [(f"{angle}", "180") for angle in range(5, 86, 5)]
+    return _directions(circle + plane)
+
+
+def probe(
+    planet: Planet,
+    directions: Directions,
+    *,
+    sun_elevation: float,
+    altitude: float = 0.0,
+    wavelengths: Array | None = None,
+    per_irradiance: bool = False,
+    illuminance: bool = False,
+    method: str = "full",
+    samples: int = 10_000,
+) -> str:
+    """Radiances of a planet's sky as CSV.
+
+    Parameters
+    ----------
+    planet : Planet
+        The world.
+    directions : Directions
+        Where to look.
+    sun_elevation : float
+        At the observer. [rad]
+    altitude : float, optional
+        Of the observer. [km]
+    wavelengths : ndarray, optional
+        In any order; default the renderer's own. [nm]
+    per_irradiance : bool, optional
+        Divide by the star's irradiance above the air, and leave out what is for eyes.
+    illuminance : bool, optional
+        Repeat the illuminances by sun and sky in every row.
+    method : {"full", "hillaire", "march", "reference"}, optional
+        `reference` traces paths and adds the standard errors.
+    samples : int, optional
+        Paths for each direction and wavelength of the reference.
+
+    Returns
+    -------
+    str
+        Lines that repeat the directions and add ``radiance_680nm`` and so on
+        [W m⁻² sr⁻¹ nm⁻¹, or sr⁻¹], and without `per_irradiance` luminance
+        [cd m⁻²] and CIE 1931 chromaticity.
+
+    Raises
+    ------
+    SkybakeError
+        If a value is out of range or the preset does not cover a wavelength.
+    """
+    fast = "full" if method == REFERENCE else method
+    sky = Sky(planet, sun_elevation, altitude, wavelengths=wavelengths, method=fast)
+    columns: dict[str, Array] = {}
+    values, errors = _radiance(sky, directions, method, samples)
+    scale = np.ones(sky.wavelengths.size) if per_irradiance else sky.irradiance
+    for k, wavelength in enumerate(sky.wavelengths):
+        columns[f"radiance_{wavelength:g}nm"] = values[:, k] * scale[k]
+        if errors is not None:
+            columns[f"stderr_{wavelength:g}nm"] = errors[:, k] * scale[k]
+    if not per_irradiance:
+        columns |= _colour(planet, sky, directions, method, samples, values)
+    if illuminance:
+        columns |= _illuminance(planet, sky, directions)
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow([*COLUMNS, *columns])
+    for i, text in enumerate(directions.text):
+        writer.writerow([*text, *(f"{column[i]:.7g}" for column in columns.values())])
+    return out.getvalue()
+
+
+def _radiance(
+    sky: Sky, directions: Directions, method: str, samples: int
+) -> tuple[Array, Array | None]:
+    """Radiance per unit irradiance and, by the reference, its standard error. [sr⁻¹]"""
+    if method == REFERENCE:
+        from skybake import reference
+
+        return reference.radiance(
+            sky.medium,
+            sky.altitude,
+            sky.sun_elevation,
+            directions.zenith,
+            directions.azimuth,
+            samples=samples,
+        )
+    sun_zenith = math.pi / 2.0 - sky.sun_elevation
+    mu = np.cos(directions.zenith)
+    nu = mu * math.cos(sun_zenith) + np.sin(directions.zenith) * math.sin(sun_zenith) * np.cos(
+        directions.azimuth
+    )
+    return sky.radiance_per_irradiance(mu, nu), None
+
+
+def _colour(
+    planet: Planet, sky: Sky, directions: Directions, method: str, samples: int, values: Array
+) -> dict[str, Array]:
+    """Luminance and chromaticity, from the renderer's own wavelengths."""
+    own = np.array(planet.wavelengths or WAVELENGTHS)
+    if not np.array_equal(sky.wavelengths, own):
+        sky = Sky(planet, sky.sun_elevation, sky.altitude, method=sky.method)
+        values, _ = _radiance(sky, directions, method, samples)
+    xyz = values @ luminous_weights(sky)
+    total = xyz.sum(axis=1)
+    total[total == 0.0] = math.nan
+    return {
+        "luminance_cd_m2": xyz[:, 1],
+        "chromaticity_x": xyz[:, 0] / total,
+        "chromaticity_y": xyz[:, 1] / total,
+    }
+
+
+def _illuminance(planet: Planet, sky: Sky, directions: Directions) -> dict[str, Array]:
+    settings = MapSettings(
+        sun_elevation=sky.sun_elevation, altitude=sky.altitude, method=sky.method
+    )
+    scene = Scene(planet, settings)
+    normal, horizontal = scene.sun_illuminance()
+    figures = {
+        "direct_normal_illuminance_lux": normal,
+        "direct_illuminance_lux": horizontal,
+        "sky_illuminance_lux": scene.sky_illuminance(),
+    }
+    return {name: np.full(directions.zenith.size, value) for name, value in figures.items()}
+
+
+def _check_angle(where: str, name: str, text: str) -> None:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise InputError(f"{where}: must be a number, got {text!r}")
+    if name == COLUMNS[0] and not 0.0 <= value <= 180.0:
+        raise InputError(f"{where}: must be from 0 to 180, got {text}")
+
+
+def _directions(text: list[tuple[str, str]]) -> Directions:
+    degrees = np.array([[float(value) for value in row] for row in text])
+    return Directions(tuple(text), *np.radians(degrees).T)

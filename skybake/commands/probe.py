@@ -1,0 +1,139 @@
+"""``skybake probe``: radiance in given directions as numbers."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+from skybake.commands import parameters
+from skybake.errors import InputError
+
+
+def _wavelengths(text: str) -> tuple[float, ...]:
+    try:
+        values = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        values = ()
+    if not values or not all(0.0 < value < 1e6 for value in values):
+        raise click.BadParameter(f"must be as 680,550,440 in nm, got {text!r}")
+    return values
+
+
+@click.command()
+@click.option(
+    "--preset",
+    default="earth",
+    show_default=True,
+    metavar="NAME|PATH",
+    help="World: a name from 'skybake presets list', or a TOML file of your own.",
+)
+@click.option(
+    "--sun",
+    "sun_elevation",
+    metavar="ANGLE",
+    type=parameters.elevation,
+    default="30deg",
+    show_default=True,
+    help="Geometric elevation of the sun's centre at the observer, -90deg to 90deg.",
+)
+@click.option(
+    "--altitude",
+    metavar="LENGTH",
+    type=parameters.altitude,
+    default="0m",
+    show_default=True,
+    help="Of the observer above the ground.",
+)
+@click.option(
+    "--directions",
+    metavar="FILE.csv|-",
+    type=click.Path(path_type=Path, allow_dash=True),
+    help="CSV with view_zenith_deg and relative_azimuth_deg; - reads standard input.",
+)
+@click.option(
+    "--wavelengths",
+    metavar="NM,NM,...",
+    type=_wavelengths,
+    show_default="the renderer's own",
+    help="Wavelengths of the radiances.",
+)
+@click.option(
+    "--per-irradiance",
+    is_flag=True,
+    help="Per unit of the star's irradiance above the air, in sr-1, without luminance and colour.",
+)
+@click.option("--illuminance", is_flag=True, help="Add illuminances by sun and sky, in lx.")
+@click.option(
+    "--method",
+    type=click.Choice((*parameters.METHODS, "reference")),
+    default="full",
+    show_default=True,
+    help="Light transport, as of render, or unbiased paths with their standard errors.",
+)
+@click.option(
+    "--samples",
+    type=click.IntRange(1, 10**9),
+    default=10_000,
+    show_default=True,
+    help="Paths for each direction and wavelength of --method reference.",
+)
+@click.option(
+    *("-o", "--output"),
+    metavar="FILE.csv",
+    type=click.Path(path_type=Path),
+    show_default="standard output",
+    help="CSV to write.",
+)
+def probe(**options: Any) -> None:
+    """Print radiances in given directions as CSV.
+
+    Without --directions it looks along the circle at the sun's elevation and along the sun's
+    vertical plane. Azimuths are relative to the sun's; radiances are in W m-2 sr-1 nm-1 and leave
+    the sun's own disc out.
+
+    \b
+    Examples:
+      skybake probe --sun 5deg --preset mars
+      skybake probe --altitude 10km --directions in.csv --wavelengths 680,550,440 --per-irradiance
+      skybake probe --sun 10deg --method reference --samples 2000
+    """
+    import numpy as np
+
+    from skybake.baking.probe import default_directions, probe, read_directions
+    from skybake.formats.partial import replace_when_whole
+    from skybake.preset import load_preset
+
+    planet = load_preset(options["preset"])
+    source: Path | None = options["directions"]
+    if source is None:
+        directions = default_directions(options["sun_elevation"])
+    elif str(source) == "-":
+        directions = read_directions("standard input", sys.stdin)
+    else:
+        try:
+            with source.open(newline="", encoding="utf-8") as lines:
+                directions = read_directions(str(source), lines)
+        except (OSError, UnicodeDecodeError) as error:
+            reason = getattr(error, "strerror", None) or "not text"
+            raise InputError(f"{source}: must be a readable CSV file, got {reason}") from error
+    wavelengths = options["wavelengths"]
+    text = probe(
+        planet,
+        directions,
+        sun_elevation=options["sun_elevation"],
+        altitude=options["altitude"],
+        wavelengths=None if wavelengths is None else np.array(wavelengths),
+        per_irradiance=options["per_irradiance"],
+        illuminance=options["illuminance"],
+        method=options["method"],
+        samples=options["samples"],
+    )
+    output: Path | None = options["output"]
+    if output is None:
+        click.echo(text, nl=False)
+        return
+    with replace_when_whole(output) as temporary:
+        temporary.write_text(text, encoding="utf-8")
