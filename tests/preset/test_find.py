@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+import skybake
 from skybake.errors import PresetError
 from skybake.preset import preset_names, preset_text
 
@@ -31,8 +32,8 @@ def names_seen_from(folder: Path) -> list[str]:
 
 @pytest.fixture
 def copied(tmp_path):
-    ignore = shutil.ignore_patterns("__pycache__")
-    shutil.copytree(REPOSITORY / "skybake", tmp_path / "skybake", ignore=ignore)
+    ignore = shutil.ignore_patterns("__pycache__", "presets")
+    shutil.copytree(Path(skybake.__file__).parent, tmp_path / "skybake", ignore=ignore)
     return tmp_path
 
 
