@@ -74,7 +74,24 @@ def make_guide(air):
             for j in range(SUNS):
                 ambient[i, j] = _gather(air, guide, i, j)
         guide.ambient[:] = ambient
+    _add_diffusion(air, guide)
     return guide
+
+
+@kernel
+def _add_diffusion(air, guide):
+    """Light that seeps through thick air, which few orders leave dark, as 1 / optical depth."""
+    k_last = len(air.altitude) - 1
+    for i in range(ALTITUDES):
+        h = _altitude(i, guide.top)
+        depth = 0.0
+        for k in range(shell_of(air.altitude, h), k_last):
+            thickness = air.altitude[k + 1] - max(h, air.altitude[k])
+            depth += 0.5 * (air.extinction[k] + air.extinction[k + 1]) * max(0.0, thickness)
+        for j in range(SUNS):
+            mu_s = max(0.0, _square(j, SUNS - 1))
+            # The excess over depth 1 alone, so that thin air keeps what was gathered.
+            guide.ambient[i, j] += mu_s * max(0.0, depth - 1.0) / (1.0 + depth) ** 2
 
 
 @kernel

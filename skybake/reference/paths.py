@@ -34,13 +34,11 @@ TOWARD_SUN = 0.3
 GUIDED = 0.35
 """Share of a path's first turns drawn by the guide, such as toward the glow of twilight."""
 
-UNGUIDED = 0.2
-"""Share of vertices drawn as an unguided photon would be."""
+GUIDED_STRETCHES = 0.8
+"""Share of a path's first vertices drawn by the guide, the others as an unguided photon's."""
 
 SURVIVAL = 0.3
-"""Paths that promise less than this, relative to their first vertex, play Russian roulette."""
-
-LEAST_SURVIVAL = 0.1
+"""Paths that weigh less than this, and by the guide promise less, play Russian roulette."""
 
 
 @kernel
@@ -50,13 +48,15 @@ def new_stretches(air):
 
 
 @kernel
-def weigh_stretches(air, guide, ray, h, mu_s, nu, lit, cumulative):
+def weigh_stretches(air, guide, ray, h, mu_s, nu, lit, order, cumulative):
     """Give each stretch of the ray, and the ground last, a probability, as running sums.
 
     Parameters
     ----------
     lit : bool
         Whether sunlight that scatters here counts, or only what scattered before.
+    order : int
+        Of the scattering that the ray leads to.
 
     Returns
     -------
@@ -89,15 +89,16 @@ def weigh_stretches(air, guide, ray, h, mu_s, nu, lit, cumulative):
         count += 1
     if total <= 0.0:
         return 0
-    # The guide may be wrong by any factor where light is scattered often; drawing some
-    # places as if all promised the same bounds what its errors can do to the weights.
+    # The guide may be wrong by any factor where light is scattered often. Drawing some
+    # places as if all promised the same, and of a long path most, bounds its weight.
+    guided = GUIDED_STRETCHES / order
     unguided = 1.0 if ray.reaches_ground else -math.expm1(-cuts.depth[ray.segments])
     for b in range(count):
         passed = 1.0
         if not (ray.reaches_ground and b == count - 1):
             last = min((b + 1) * SEGMENTS_PER_STRETCH, ray.segments)
             passed = -math.expm1(-cuts.depth[last])
-        cumulative[b] = (1.0 - UNGUIDED) * cumulative[b] / total + UNGUIDED * passed / unguided
+        cumulative[b] = guided * cumulative[b] / total + (1.0 - guided) * passed / unguided
     return count
 
 
@@ -177,7 +178,8 @@ def follow(
     cuts, later_cumulative, each = scratch
     radiance = 0.0
     weight = 1.0
-    promised = 0.0
+    first_weight = 0.0
+    first_promise = 0.0
     order = 1
     while True:
         if stretches == 0:
@@ -204,8 +206,10 @@ def follow(
             return radiance
         promise = weight * look_up(guide, guide.ambient, h, mu_s)
         if order == 1:
-            promised = promise
-        survival = min(1.0, max(LEAST_SURVIVAL, promise / (SURVIVAL * promised)))
+            first_weight = weight
+            first_promise = promise
+        kept = max(weight / first_weight, promise / first_promise)
+        survival = min(1.0, kept / SURVIVAL)
         if survival < 1.0:
             if uniform(state) >= survival:
                 return radiance
@@ -220,7 +224,7 @@ def follow(
         ray = trace(air, h, mu, cuts)
         cumulative = later_cumulative
         stretches = weigh_stretches(
-            air, guide, ray, h, mu_s, dot(direction, sun), order + 1 >= first, cumulative
+            air, guide, ray, h, mu_s, dot(direction, sun), order + 1 >= first, order + 1, cumulative
         )
         u = uniform(state)
         order += 1
@@ -276,7 +280,7 @@ def mean_radiance(air, guide, sun, h, direction, first, last, samples, seed):
     ray = trace(air, h, direction[2], new_cuts(air))
     cumulative = new_stretches(air)
     stretches = weigh_stretches(
-        air, guide, ray, h, sun[2], dot(direction, sun), first <= 1, cumulative
+        air, guide, ray, h, sun[2], dot(direction, sun), first <= 1, 1, cumulative
     )
     total = 0.0
     for i in range(samples):
@@ -341,7 +345,7 @@ def mean_irradiance(air, guide, sun, h, facing, samples, seed):
             density += around_sun * lobe
         ray = trace(air, h, direction[2], first_cuts)
         stretches = weigh_stretches(
-            air, guide, ray, h, sun[2], dot(direction, sun), True, cumulative
+            air, guide, ray, h, sun[2], dot(direction, sun), True, 1, cumulative
         )
         total += (cosine / density) * follow(
             air, guide, sun, ray, stretches, cumulative, uniform(state), up, h, direction,

@@ -108,7 +108,7 @@ def test_all_orders_agree_with_the_tables(name, altitude, sun):
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "altitude", "sun"), SCENES + MORE_SCENES)
 def test_all_orders_agree_with_the_tables_at_many_samples(name, altitude, sun):
-    check_all_orders(name, altitude, sun, samples=64_000, count=10, worst_stderr=0.03)
+    check_all_orders(name, altitude, sun, samples=32_000, count=5, worst_stderr=0.03)
 
 
 def test_sampling_the_first_order_gives_its_quadrature():
@@ -197,8 +197,9 @@ def planet(extinction: float, ground_albedo: float, g: float = 0.75) -> Medium:
 
 
 @pytest.mark.slow
-def test_a_planet_that_absorbs_nothing_returns_all_the_light():
-    air = air_at(planet(0.05, ground_albedo=1.0), 0)
+@pytest.mark.parametrize("depth", [0.4, 5.0])
+def test_a_planet_that_absorbs_nothing_returns_all_the_light(depth):
+    air = air_at(planet(depth / 8.0, ground_albedo=1.0), 0)
     guide = make_guide(air)
     top, r_top = 60.0, 1060.0
     # Diffuse light out of the sphere, by Gauss-Legendre over the sun's zenith angle.
@@ -219,7 +220,7 @@ def test_a_planet_that_absorbs_nothing_returns_all_the_light():
     p = np.linspace(1000.0, r_top, 4001)[:-1] + 30.0 / 4000
     limb = [transmittance_to_space(air, top, -math.sqrt(1.0 - (q / r_top) ** 2)) for q in p]
     direct = np.sum(2.0 * p * np.array(limb)) * 60.0 / 4000 / r_top**2
-    assert math.sqrt(variance) < 0.004
+    assert math.sqrt(variance) < 0.01
     assert abs(diffuse + direct - 1.0) < 3.0 * math.sqrt(variance) + 0.001
 
 
