@@ -68,7 +68,7 @@ class MapSettings:
     compression: str = "zip"
     sun_disc: str = "include"
     clamp_negative: bool = False
-    method: str = "hillaire"
+    method: str = "full"
 
     def __post_init__(self) -> None:
         """Refuse what cannot be baked."""

@@ -106,7 +106,7 @@ from skybake.commands import parameters, report, request
 @click.option(
     "--method",
     type=click.Choice(parameters.METHODS),
-    default="hillaire",
+    default="full",
     show_default=True,
     help="Light transport: all orders of scattering, Hillaire's closure, or single scattering.",
 )

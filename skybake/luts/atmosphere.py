@@ -19,7 +19,8 @@ from skybake.luts.field import DiffuseField, sun_bins
 from skybake.luts.harmonics import build_harmonics
 from skybake.luts.solver import ORDER, solve_field
 from skybake.luts.transmittance import build_columns
-from skybake.optics.legendre import Truncation, keep_peaks, truncate_peaks
+from skybake.optics.legendre import Truncation, channel_groups, keep_peaks, truncate_peaks
+from skybake.optics.lobes import Lobes, split_phase
 from skybake.optics.medium import Array, Medium
 from skybake.transport.kernel import cache_directory
 from skybake.transport.shells import altitude_shells
@@ -41,12 +42,15 @@ class Atmosphere(NamedTuple):
         Columns toward the sun, see `build_columns`.
     field : DiffuseField
         The light that was scattered before.
+    lobes : Lobes
+        Curves that the phase functions of `cut` are sums of.
     """
 
     cut: Truncation
     shells: Array
     columns: Array
     field: DiffuseField
+    lobes: Lobes
 
 
 def build_atmosphere(medium: Medium, method: str) -> Atmosphere:
@@ -67,7 +71,8 @@ def build_atmosphere(medium: Medium, method: str) -> Atmosphere:
     cut = truncate_peaks(medium, ORDER) if method == "full" else keep_peaks(medium)
     columns = build_columns(medium)
     solve = solve_field if method == "full" else close_field
-    return Atmosphere(cut, altitude_shells(medium), columns, solve(cut, columns))
+    lobes = split_phase(cut.phase, channel_groups(cut))
+    return Atmosphere(cut, altitude_shells(medium), columns, solve(cut, columns), lobes)
 
 
 def load_atmosphere(medium: Medium, method: str) -> Atmosphere:
@@ -121,6 +126,8 @@ def _to_arrays(atmosphere: Atmosphere) -> dict[str, Any]:
         "source": field.source,
         "radiance": field.radiance,
         "ground": field.ground,
+        "lobe_curves": atmosphere.lobes.curves,
+        "lobe_weights": atmosphere.lobes.weights,
     }
 
 
@@ -142,7 +149,8 @@ def _from_arrays(medium: Medium, arrays: dict[str, Any]) -> Atmosphere:
         ground=arrays["ground"],
     )
     cut = Truncation(medium=scaled, **cut_arrays)
-    return Atmosphere(cut, arrays["shells"], arrays["columns"], field)
+    lobes = Lobes(arrays["lobe_curves"], arrays["lobe_weights"])
+    return Atmosphere(cut, arrays["shells"], arrays["columns"], field, lobes)
 
 
 def _store(path: Path, atmosphere: Atmosphere) -> None:

@@ -15,9 +15,13 @@ import numpy.typing as npt
 from skybake.luts.harmonics import Harmonics, fill_harmonics
 from skybake.optics.medium import Array
 from skybake.transport.exponential import fast_exp
+from skybake.transport.geometry import radius_at
 from skybake.transport.kernel import kernel
 
 ANGLE_BINS = 2048
+NEGLIGIBLE = 3e-4
+"""Share of a ray's scattering below which an order l of a sample is left out."""
+
 TWILIGHT_SLOPE = 40.0
 TWILIGHT_ONSET = math.radians(5.0)
 
@@ -163,58 +167,95 @@ def add_diffuse(field, r_bottom, r, mu, mu_s, nu, samples, count, scratch, out):
     out : ndarray of float64, shape (wavelength,)
         Receives radiance per unit irradiance. [sr⁻¹]
     """
-    order = field.harmonics.order
     wavelengths = out.size
-    moments = field.radiance.shape[2]
-    for n in range(count):
-        radius = samples.radius[n]
-        t = samples.distance[n]
+    whole, scattering = scratch.whole, scratch.scattering
+    for k in range(wavelengths):
+        whole[k] = 0.0
+    for n in range(0, count, 2):
+        fill_scattering(field, samples, n, n + 2, 1, scattering)
+        for k in range(wavelengths):
+            whole[k] += scattering[0, k]
+    # The field is smooth within a step, so that its two samples share a lookup halfway.
+    for n in range(0, count, 2):
+        fill_scattering(field, samples, n, n + 2, scattering.shape[0], scattering)
+        degrees = count_degrees(scattering, whole)
+        if degrees == 0:
+            continue
+        t = 0.5 * (samples.distance[n] + samples.distance[n + 1])
+        radius = radius_at(r, mu, t)
         mu_s_here = min(max((r * mu_s + t * nu) / radius, -1.0), 1.0)
+        mu_here = min(max((r * mu + t) / radius, -1.0), 1.0)
         i, u = altitude_weight(field.altitude, radius - r_bottom)
         j = sun_weights(field.sun_angle, field.sun_bin, mu_s_here, scratch.weights)
-        local = scratch.local
-        for k in range(moments * wavelengths):
-            local[k] = 0.0
-        for side in range(2):
-            share = (1.0 - u) if side == 0 else u
-            for q in range(4):
-                weight = np.float32(share * scratch.weights[q])
-                node = field.radiance[i + side, j + q].reshape(moments * wavelengths)
-                for k in range(moments * wavelengths):
-                    local[k] += weight * node[k]
-        fill_scattering(field, samples, n, scratch.scattering)
-        mu_here = min(max((r * mu + t) / radius, -1.0), 1.0)
         fill_harmonics(field.harmonics, mu_here, scratch.polar)
         sines = math.sqrt((1.0 - mu_here * mu_here) * (1.0 - mu_s_here * mu_s_here))
         cosine = 1.0 if sines < 1e-12 else (nu - mu_here * mu_s_here) / sines
-        cosine = min(max(cosine, -1.0), 1.0)
-        before, now = cosine, 1.0
-        p = 0
-        for m in range(order + 1):
-            for degree in range(m, order + 1):
-                factor = np.float32(now * scratch.polar[p])
-                for k in range(wavelengths):
-                    out[k] += factor * scratch.scattering[degree, k] * local[p * wavelengths + k]
-                p += 1
-            before, now = now, 2.0 * cosine * now - before
+        _add_harmonics(field, scratch, i, j, u, min(max(cosine, -1.0), 1.0), degrees, out)
 
 
 @kernel
-def fill_scattering(field, samples, n, out):
-    """Write weight * scattering coefficient * chi_l of a sample, shape (order + 1, wavelength)."""
-    for degree in range(out.shape[0]):
+def _add_harmonics(field, scratch, i, j, u, cosine, degrees, out):
+    """Add the harmonics of the field between two altitudes and four sun angles."""
+    order = field.harmonics.order
+    low, high = np.float32(1.0 - u), np.float32(u)
+    a, b = np.float32(scratch.weights[0]), np.float32(scratch.weights[1])
+    c, d = np.float32(scratch.weights[2]), np.float32(scratch.weights[3])
+    lower, upper = field.radiance[i], field.radiance[i + 1]
+    before, now = cosine, 1.0
+    first = 0
+    for m in range(degrees):
+        for degree in range(m, degrees):
+            p = first + degree - m
+            factor = np.float32(now * scratch.polar[p])
+            for k in range(out.size):
+                below = (
+                    a * lower[j, p, k]
+                    + b * lower[j + 1, p, k]
+                    + c * lower[j + 2, p, k]
+                    + d * lower[j + 3, p, k]
+                )
+                above = (
+                    a * upper[j, p, k]
+                    + b * upper[j + 1, p, k]
+                    + c * upper[j + 2, p, k]
+                    + d * upper[j + 3, p, k]
+                )
+                out[k] += factor * scratch.scattering[degree, k] * (low * below + high * above)
+        first += order + 1 - m
+        before, now = now, 2.0 * cosine * now - before
+
+
+@kernel
+def fill_scattering(field, samples, first, last, degrees, out):
+    """Write weight * scattering coefficient * chi_l of samples, shape (degree, wavelength)."""
+    for degree in range(degrees):
         for k in range(out.shape[1]):
-            total = 0.0
-            for c in range(field.source.shape[0]):
-                total += samples.density[n, c] * field.source[c, degree, k]
-            out[degree, k] = total * samples.weight[n, k]
+            out[degree, k] = 0.0
+    for n in range(first, last):
+        for c in range(field.source.shape[0]):
+            density = samples.density[n, c]
+            if density == 0.0:
+                continue
+            for degree in range(degrees):
+                for k in range(out.shape[1]):
+                    out[degree, k] += density * field.source[c, degree, k] * samples.weight[n, k]
+
+
+@kernel
+def count_degrees(scattering, whole):
+    """Orders l of a sample that matter beside what all samples of the ray scatter."""
+    for degree in range(scattering.shape[0] - 1, -1, -1):
+        for k in range(whole.size):
+            if abs(scattering[degree, k]) > NEGLIGIBLE * whole[k]:
+                return degree + 1
+    return 0
 
 
 class FieldScratch(NamedTuple):
     """Work space of `add_diffuse`; each thread needs its own."""
 
     weights: Array
-    local: npt.NDArray[np.float32]
+    whole: Array
     scattering: npt.NDArray[np.float32]
     polar: Array
 
@@ -224,7 +265,7 @@ def allocate_scratch(field: DiffuseField) -> FieldScratch:
     _, _, moments, wavelengths = field.radiance.shape
     return FieldScratch(
         weights=np.empty(4),
-        local=np.empty(moments * wavelengths, np.float32),
+        whole=np.empty(wavelengths),
         scattering=np.empty((field.harmonics.order + 1, wavelengths), np.float32),
         polar=np.empty(moments),
     )

@@ -81,18 +81,22 @@ def _split_peak(cut, column, samples, n, light, peak, filled):
 def _add_peak(cut, nodes, samples, n, peak, filled, out):
     """Share the peak's light among the channels of the two nodes around `filled`."""
     constituents = cut.fraction.shape[0]
+    least, most = filled[0], filled[0]
+    for k in range(1, filled.size):
+        least, most = min(least, filled[k]), max(most, filled[k])
     for i in range(nodes.size):
         below = nodes[i] - nodes[i - 1] if i > 0 else 1.0
         above = nodes[i + 1] - nodes[i] if i + 1 < nodes.size else 1.0
+        if most < nodes[i] - below or least > nodes[i] + above:
+            continue
         for j in range(cut.peaked.size):
             c = cut.peaked[j]
             channel = constituents + j * nodes.size + i
             density = samples.density[n, c]
             for k in range(peak.size):
                 offset = filled[k] - nodes[i]
-                hat = 1.0 - (offset / above if offset > 0.0 else -offset / below)
-                if hat > 0.0:
-                    out[channel, k] += density * cut.scattering[c, k] * hat * peak[k]
+                hat = max(1.0 - max(offset / above, -offset / below), 0.0)
+                out[channel, k] += density * cut.scattering[c, k] * hat * peak[k]
 
 
 @kernel

@@ -12,6 +12,7 @@ from skybake.luts.anderson import Anderson
 from skybake.luts.field import (
     DiffuseField,
     altitude_weight,
+    count_degrees,
     fill_ground_irradiance,
     fill_scattering,
     sun_bins,
@@ -37,7 +38,6 @@ TOLERANCE = 1e-3
 MAX_PASSES = 120
 ARC = math.radians(2.0)
 FIRST_ARC = math.radians(1.0)
-NEGLIGIBLE = 3e-4
 
 LANES = 16
 """The solver pads wavelengths to a multiple: loops of known length become plain vector code."""
@@ -304,13 +304,13 @@ def _scatter_rows(medium, shells, field, grid, suns, around, samples, first, las
         for k in range(wavelengths):
             whole[k] = 0.0
         for n in range(count):
-            fill_scattering(field, samples, n, scattering)
+            fill_scattering(field, samples, n, n + 1, 1, scattering)
             for k in range(wavelengths):
                 whole[k] += scattering[0, k]
         for n in range(count):
             radius, t = samples.radius[n], samples.distance[n]
-            fill_scattering(field, samples, n, scattering)
-            degrees = _count_degrees(scattering, whole)
+            fill_scattering(field, samples, n, n + 1, order + 1, scattering)
+            degrees = count_degrees(scattering, whole)
             if degrees == 0:
                 continue
             mu_here = min(max((r * mu + t) / radius, -1.0), 1.0)
@@ -346,16 +346,6 @@ def _scatter_rows(medium, shells, field, grid, suns, around, samples, first, las
                     for k in range(wavelengths):
                         reflected = medium.ground_albedo[k] / math.pi * sky[k]
                         out[i, a, j, b, k] += samples.transmittance[k] * reflected
-
-
-@kernel
-def _count_degrees(scattering, whole):
-    """Orders l of a sample that matter beside what all samples of the ray scatter."""
-    for degree in range(scattering.shape[0] - 1, -1, -1):
-        for k in range(whole.size):
-            if abs(scattering[degree, k]) > NEGLIGIBLE * whole[k]:
-                return degree + 1
-    return 0
 
 
 @kernel

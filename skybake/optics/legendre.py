@@ -154,6 +154,16 @@ def truncate_peaks(medium: Medium, order: int) -> Truncation:
     )
 
 
+def channel_groups(cut: Truncation) -> list[list[int]]:
+    """Channels of a ray by constituent: its truncated function and those of its peak."""
+    constituents = cut.moments.shape[0]
+    groups = [[c] for c in range(constituents)]
+    for j, c in enumerate(cut.peaked):
+        first = constituents + j * PEAK_NODES.size
+        groups[c].extend(range(first, first + PEAK_NODES.size))
+    return groups
+
+
 def keep_peaks(medium: Medium) -> Truncation:
     """Present a medium as it is, for methods that know no peaks."""
     nothing = np.zeros_like(medium.scattering)

@@ -15,7 +15,7 @@ from skybake.optics.medium import Array, build_medium
 from skybake.optics.phase import eval_phase
 from skybake.optics.spectrum import star_irradiance
 from skybake.preset import Planet, load_preset
-from skybake.sky.lobes import split_phase
+from skybake.optics.lobes import Lobes, split_phase
 from skybake.sky.view import (
     AZIMUTHS,
     AZIMUTHS_TWILIGHT,
@@ -181,7 +181,7 @@ class Sky:
         mu = np.cos(theta)
         nu = mu * math.cos(sun_zenith) + np.sin(theta) * math.sin(sun_zenith) * np.cos(phi)
         light = self._light(mu.ravel(), nu.ravel())
-        lobes = split_phase(self._phase)
+        lobes = self._lobes
         fold = np.einsum("cwq,wk->cwkq", lobes.weights, rgb_weights)
         table = np.tensordot(light.single, fold, axes=2)
         table[:, :, 0] += light.diffuse @ rgb_weights
@@ -199,7 +199,7 @@ class Sky:
         nu = np.clip(nu, -1.0, 1.0)
         if self.method == "march":
             return RayLight(*march_rays(self.medium, r, mu, mu_s, nu))
-        return trace_rays(*self.atmosphere, r, mu, mu_s, nu)
+        return trace_rays(*self.atmosphere[:4], r, mu, mu_s, nu)
 
     @cached_property
     def atmosphere(self) -> Atmosphere:
@@ -211,3 +211,10 @@ class Sky:
     def _phase(self) -> Array:
         """Phase functions of the channels of `_light`, (channel, angle, wavelength)."""
         return self.medium.phase if self.method == "march" else self.atmosphere.cut.phase
+
+    @property
+    def _lobes(self) -> Lobes:
+        """Curves that the phase functions of `_phase` are sums of."""
+        if self.method == "march":
+            return split_phase(self.medium.phase, [[c] for c in range(len(self.medium.phase))])
+        return self.atmosphere.lobes

@@ -21,7 +21,7 @@ from skybake.transport.geometry import (
 from skybake.transport.kernel import kernel
 
 MAX_SAMPLES = 4096
-MAX_ARC = math.radians(0.5)
+MAX_ARC = math.radians(0.6)
 MAX_STEP_OPTICAL_DEPTH = 1.0
 OPAQUE = 1e-9
 
