@@ -15,7 +15,7 @@ def truth_sky(name, elevation, altitude, method="full"):
     It has no planet and so no star: only what is per unit irradiance can be asked.
     """
     sky = bare_sky(truth_medium(name), elevation, altitude, method)
-    sky.__dict__ |= _tables(name, method)
+    sky.__dict__["atmosphere"] = _atmosphere(name, method)
     return sky
 
 
@@ -31,11 +31,19 @@ def bare_sky(medium, elevation, altitude, method="full"):
     return sky
 
 
+def without_diffuse_light(sky):
+    """Leave only light that is scattered or reflected once; changes the sky."""
+    field = sky.atmosphere.field
+    dark = field._replace(
+        radiance=np.zeros_like(field.radiance), ground=np.zeros_like(field.ground)
+    )
+    sky.__dict__["atmosphere"] = sky.atmosphere._replace(field=dark)
+    return sky
+
+
 @functools.cache
-def _tables(name, method):
-    """Parts that do not depend on the sun or the observer."""
-    sky = bare_sky(truth_medium(name), 0.0, 0.0, method)
-    return {part: getattr(sky, part) for part in ("cut", "shells", "columns", "field")}
+def _atmosphere(name, method):
+    return bare_sky(truth_medium(name), 0.0, 0.0, method).atmosphere
 
 
 def view_cosines(view_zenith, azimuth, elevation):

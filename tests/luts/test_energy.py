@@ -55,12 +55,13 @@ def radiance_under_even_light(sky, h, mu):
     r = RADIUS + h
     nu = mu * mu_s + np.sqrt((1.0 - mu**2) * (1.0 - mu_s**2)) * np.cos(azimuth)
     same = np.full(mu_s.shape, r), np.full(mu_s.shape, mu)
-    light = trace_rays(sky.cut, sky.shells, sky.columns, sky.field, *same, mu_s, nu)
-    scattered = (light.single * eval_phase(sky.cut.phase, nu)).sum(axis=1) + light.diffuse
+    air = sky.atmosphere
+    light = trace_rays(*air, *same, mu_s, nu)
+    scattered = (light.single * eval_phase(air.cut.phase, nu)).sum(axis=1) + light.diffuse
     through = np.zeros(DEPTHS.size)
     if distance_to_entry(r, mu, RADIUS) == math.inf:
         column = np.empty(1)
-        fill_sun_column(sky.columns, RADIUS, sky.medium.r_top, r, mu, column)
+        fill_sun_column(air.columns, RADIUS, sky.medium.r_top, r, mu, column)
         fill_transmittance(sky.medium.extinction, column, through)
     return solid_angle @ scattered + through
 

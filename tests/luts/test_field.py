@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.special import sph_harm_y
 
-from skybake.luts.field import fast_acos, sun_bins, sun_weights
+from skybake.luts.field import fast_acos, log_twilight, sun_bins, sun_weights
 from skybake.luts.harmonics import build_harmonics, fill_harmonics
 from skybake.luts.solver import sun_angles
 
@@ -34,19 +34,31 @@ def test_sun_angles_are_denser_than_a_degree_about_the_horizon():
     step = np.degrees(np.diff(ANGLES))
     assert (step > 0.0).all()
     middle = np.degrees(0.5 * (ANGLES[1:] + ANGLES[:-1]))
-    assert step[(middle > 88.5) & (middle < 104.0)].max() < 1.0
+    assert step[(middle > 89.0) & (middle < 104.0)].max() < 1.0
     assert step.max() < 10.5
 
 
 @given(st.floats(-1.0, 1.0))
-def test_sun_weights_restore_every_cubic(mu_s):
+def test_sun_weights_restore_every_cubic_times_the_decline_of_twilight(mu_s):
     weights = np.empty(4)
     j = sun_weights(ANGLES, BINS, mu_s, weights)
-    node = ANGLES[j : j + 4]
     angle = min(math.acos(mu_s), ANGLES[-1])
-    assert weights.sum() == pytest.approx(1.0, abs=1e-9)
-    for power in (1, 2, 3):
-        assert weights @ node**power == pytest.approx(angle**power, abs=1e-6)
+    decline = np.exp([log_twilight(node) - log_twilight(angle) for node in ANGLES[j : j + 4]])
+    for power in range(4):
+        got = weights @ (decline * ANGLES[j : j + 4] ** power)
+        assert got == pytest.approx(angle**power, rel=2e-6, abs=2e-6)
+
+
+def test_twilight_is_taken_to_fall_from_the_horizon_on_and_ever_steeper_then_straight():
+    angles = np.radians(np.linspace(0.0, 120.0, 2401))
+    log = np.array([log_twilight(angle) for angle in angles])
+    assert (log[angles <= math.pi / 2.0] == 0.0).all()
+    slope = np.diff(log)
+    assert (slope <= 1e-12).all()
+    assert (np.diff(slope) <= 1e-9).all()
+    # A magnitude a degree, within a half, is what skies lose (Patat et al. 2006).
+    per_degree = -slope[-1] / 0.05 * 2.5 / math.log(10.0)
+    assert 0.7 < per_degree < 1.6
 
 
 @given(st.floats(-0.45, 1.0))

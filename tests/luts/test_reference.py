@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tests.skies import truth_sky, view_cosines
+from tests.skies import truth_sky, view_cosines, without_diffuse_light
 from tests.truth import TRUTH_WAVELENGTHS, load_truth
 
 TABLES = {name: load_truth(name) for name in ("EARTH_A", "EARTH_HAZE", "MARS_A")}
@@ -83,12 +83,7 @@ def test_single_scattering_is_right_within_three_per_mille_at_every_row(name, al
     """Deterministic in the tables, where quadrature leaves 1e-4."""
     rows = rows_of(name, altitude, elevation)
     rows = rows[rows["order1"] > 1e-3 * rows["order1"].max()]
-    sky = truth_sky(name, elevation, altitude, "hillaire")
-    # Without a diffuse field, what remains is scattered or reflected exactly once.
-    field = sky.field
-    sky.__dict__["field"] = field._replace(
-        radiance=np.zeros_like(field.radiance), ground=np.zeros_like(field.ground)
-    )
+    sky = without_diffuse_light(truth_sky(name, elevation, altitude, "hillaire"))
     error = radiance_of(sky, rows) / rows["order1"] - 1.0
     assert np.abs(error).max() < 0.003
     assert math.sqrt(np.mean(error**2)) < 0.001

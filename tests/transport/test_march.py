@@ -8,7 +8,7 @@ import pytest
 from skybake.luts.ray import trace_rays
 from skybake.transport.march import march_rays
 from tests.media import cosine_to_sun
-from tests.skies import truth_sky
+from tests.skies import truth_sky, without_diffuse_light
 from tests.truth import truth_medium
 
 
@@ -30,7 +30,7 @@ def test_marching_agrees_with_tables_at_the_first_order(name, elevation, toleran
     medium = truth_medium(name)
     sky = truth_sky(name, elevation, h, "hillaire")
     arguments = rays(medium, h, elevation)
-    traced = trace_rays(sky.cut, sky.shells, sky.columns, sky.field, *arguments)
+    traced = trace_rays(*sky.atmosphere, *arguments)
     # From orbit steps crowd at the top of the air, so the haze at the limb needs many.
     view_steps = 8192 if h > 100.0 else 1024
     single, _ = march_rays(medium, *arguments, view_steps=view_steps, light_steps=256)
@@ -52,12 +52,9 @@ def test_marching_converges_with_the_square_of_the_step():
 @pytest.mark.parametrize("name", ["EARTH_A", "MARS_A"])
 def test_sunlit_ground_by_marching_is_the_traced_ground_without_skylight(name):
     medium = truth_medium(name)
-    sky = truth_sky(name, 40.0, 10.0, "hillaire")
-    dark = sky.field._replace(
-        radiance=np.zeros_like(sky.field.radiance), ground=np.zeros_like(sky.field.ground)
-    )
+    sky = without_diffuse_light(truth_sky(name, 40.0, 10.0, "hillaire"))
     arguments = rays(medium, 10.0, 40.0)
-    traced = trace_rays(sky.cut, sky.shells, sky.columns, dark, *arguments).diffuse
+    traced = trace_rays(*sky.atmosphere, *arguments).diffuse
     _, ground = march_rays(medium, *arguments, view_steps=1024)
     assert (ground > 0.0).any()
     np.testing.assert_allclose(ground, traced, rtol=2e-3, atol=1e-9)
