@@ -14,6 +14,9 @@ from skybake.projection import cubemap, equirect
 
 Pixels = npt.NDArray[np.float32]
 
+LIMB_SAMPLES = 16
+LIMB_COARSE = 0.05
+
 
 class Panel(ABC):
     """One rectangle of pixels.
@@ -176,10 +179,32 @@ class _Disc:
 
 
 def _sky(scene: Scene, zenith: np.ndarray, azimuth: np.ndarray, height: float) -> Pixels:
+    shape = np.broadcast_shapes(zenith.shape, azimuth.shape)
     if scene.settings.sun_disc == "only":
-        shape = np.broadcast_shapes(zenith.shape, azimuth.shape)
         return np.zeros((*shape, 3), np.float32)
-    return scene.evaluate(zenith, azimuth, height)
+    pixels = scene.evaluate(zenith, azimuth, height)
+    limb = _limb(scene, zenith, height)
+    if limb.any():
+        # Seen from space the air is a thin line; within a pixel it falls from bright to black.
+        offsets = height * ((np.arange(LIMB_SAMPLES) + 0.5) / LIMB_SAMPLES - 0.5)
+        fine = zenith[limb][:, None] + offsets
+        if zenith.shape[1] == 1:
+            samples = scene.evaluate(fine.reshape(-1, 1), azimuth, height / LIMB_SAMPLES)
+            samples = samples.reshape(-1, LIMB_SAMPLES, shape[1], 3)
+            pixels[limb[:, 0]] = samples.mean(axis=1)
+        else:
+            around = np.broadcast_to(azimuth[limb][:, None], fine.shape)
+            pixels[limb] = scene.evaluate(fine, around, height / LIMB_SAMPLES).mean(axis=1)
+    return pixels
+
+
+def _limb(scene: Scene, zenith: np.ndarray, height: float) -> np.ndarray:
+    """Pixels that hold a part of the limb, where the limb is only a few pixels high."""
+    first, last = scene.view.zenith_first, scene.view.zenith_horizon
+    if first == 0.0 or height < LIMB_COARSE * (last - first):
+        return np.zeros(zenith.shape, np.bool_)
+    overlaps: np.ndarray = (zenith + 0.5 * height > first) & (zenith - 0.5 * height < last)
+    return overlaps
 
 
 def _finish(scene: Scene, pixels: Pixels, disc: _Disc, first: int) -> Pixels:

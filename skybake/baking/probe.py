@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from skybake import reference
 from skybake.baking.scene import Scene, luminous_weights
 from skybake.baking.settings import MapSettings
 from skybake.errors import InputError
@@ -67,7 +68,7 @@ def read_directions(where: str, lines: Iterable[str]) -> Directions:
 
 
 def default_directions(sun_elevation: float) -> Directions:
-    """The circle at the sun's elevation (10 deg if it has set) and the sun's vertical plane."""
+    """Return the circle at the sun's elevation, at least 10 deg, and the sun's vertical plane."""
     zenith = 90.0 - max(round(math.degrees(sun_elevation), 6), 10.0)
     circle = [(f"{zenith:g}", f"{azimuth}") for azimuth in range(0, 181, 15)]
     plane = [(f"{angle}", "0") for angle in range(85, -1, -5)]
@@ -148,8 +149,6 @@ def _radiance(
 ) -> tuple[Array, Array | None]:
     """Radiance per unit irradiance and, by the reference, its standard error. [sr⁻¹]"""
     if method == REFERENCE:
-        from skybake import reference
-
         return reference.radiance(
             sky.medium,
             sky.altitude,

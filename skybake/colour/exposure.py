@@ -100,7 +100,10 @@ def auto_ev(luminance: npt.NDArray[np.floating]) -> float:
     mostly = _weighted_quantile(sample, weights, _MOSTLY)
     bright = _weighted_quantile(sample, weights, _SUN_FREE)
     bright_above = _weighted_quantile(sample[above], weights[above], _SUN_FREE)
-    if bright_above >= _DARK * bright:
+    if bright == 0.0 and sample.any():
+        # Seen from far away, the planet is less than a hundredth of the sky.
+        bright = _weighted_quantile(sample[sample > 0.0], weights[sample > 0.0], _SUN_FREE)
+    elif bright_above >= _DARK * bright:
         sample, weights, bright = sample[above], weights[above], bright_above
     lit = sample >= max(_DARK * bright, _NO_LIGHT)
     if not lit.any():

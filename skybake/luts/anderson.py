@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from skybake.optics.medium import Array
@@ -36,10 +38,8 @@ class Anderson:
             return image
         del self._states[: -MEMORY - 1], self._images[: -MEMORY - 1]
         residuals = [g - x for x, g in zip(self._states, self._images, strict=True)]
-        changes = np.stack([b - a for a, b in zip(residuals, residuals[1:], strict=False)], axis=1)
-        moves = np.stack(
-            [b - a for a, b in zip(self._images, self._images[1:], strict=False)], axis=1
-        )
+        changes = np.stack([b - a for a, b in pairwise(residuals)], axis=1)
+        moves = np.stack([b - a for a, b in pairwise(self._images)], axis=1)
         normal = changes @ changes.transpose(0, 2, 1)
         trace = np.trace(normal, axis1=1, axis2=2)[:, None, None]
         # Nearly parallel residuals leave the weights undetermined; this keeps them small.

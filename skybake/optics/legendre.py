@@ -118,8 +118,8 @@ def truncate_peaks(medium: Medium, order: int) -> Truncation:
     (exact single scattering over a truncated field).
     """
     series = legendre_moments(medium.phase, SERIES_ORDER)
-    column = np.trapezoid(
-        medium.density, np.linspace(0.0, 1.0, medium.density.shape[0]) ** 2, axis=0
+    column = np.asarray(
+        np.trapezoid(medium.density, np.linspace(0.0, 1.0, medium.density.shape[0]) ** 2, axis=0)
     )
     fraction = np.maximum(series[:, order + 1], 0.0)
     is_peaked = (fraction.max(axis=1) > PEAKED) & (medium.scattering.max(axis=1) > 0.0)
@@ -137,20 +137,19 @@ def truncate_peaks(medium: Medium, order: int) -> Truncation:
     peaked = np.flatnonzero(is_peaked)
     for c in peaked:
         phase[c] = _sum_series(polynomials[: order + 1], moments[c])
-    channels = [phase]
-    for c in peaked:
-        channels.append(
-            _peak_functions(
-                medium.phase[c], series[c], fraction[c], mixture_series, mixture, polynomials, order
-            )
+    peaks = [
+        _peak_functions(
+            medium.phase[c], series[c], fraction[c], mixture_series, mixture, polynomials, order
         )
+        for c in peaked
+    ]
     scaled = medium._replace(
         scattering=medium.scattering * kept,
         extinction=medium.extinction - medium.scattering * fraction,
         phase=phase,
     )
     return Truncation(
-        scaled, moments, peaked, fraction, true_scattering, mixture, np.concatenate(channels)
+        scaled, moments, peaked, fraction, true_scattering, mixture, np.concatenate([phase, *peaks])
     )
 
 
@@ -195,7 +194,7 @@ def _peak_functions(
     polynomials: Array,
     order: int,
 ) -> Array:
-    """What is left of a phase function after truncation, at each depth of `PEAK_NODES`.
+    """Return what truncation leaves of a phase function, at each depth of `PEAK_NODES`.
 
     Light that was scattered n times within peaks on its straight way from the sun
     and then once toward the observer has moments chi_l**(n+1). Summed over n with

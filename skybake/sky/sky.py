@@ -11,11 +11,11 @@ import numpy as np
 from skybake.errors import InputError
 from skybake.luts.atmosphere import Atmosphere, load_atmosphere
 from skybake.luts.ray import RayLight, trace_rays
+from skybake.optics.lobes import Lobes, split_phase
 from skybake.optics.medium import Array, build_medium
 from skybake.optics.phase import eval_phase
 from skybake.optics.spectrum import star_irradiance
 from skybake.preset import Planet, load_preset
-from skybake.optics.lobes import Lobes, split_phase
 from skybake.sky.view import (
     AZIMUTHS,
     AZIMUTHS_TWILIGHT,
@@ -136,7 +136,8 @@ class Sky:
         unit = directions / length
         mu = unit[..., 1]
         nu = unit @ self.sun_direction
-        return self.radiance_per_irradiance(mu, nu) * self.irradiance
+        radiance: Array = self.radiance_per_irradiance(mu, nu) * self.irradiance
+        return radiance
 
     def radiance_per_irradiance(self, mu: Array, nu: Array) -> Array:
         """Radiance per unit irradiance of the sun above the air.
@@ -153,7 +154,7 @@ class Sky:
         """
         light = self._light(mu.ravel(), nu.ravel())
         phase = eval_phase(self._phase, nu.ravel())
-        radiance = (light.single * phase).sum(axis=1) + light.diffuse
+        radiance: Array = (light.single * phase).sum(axis=1) + light.diffuse
         return radiance.reshape(*mu.shape, -1)
 
     def view(self, rgb_weights: Array) -> SkyView:

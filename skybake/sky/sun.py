@@ -107,7 +107,7 @@ class SunDisc:
 
 @kernel
 def _fill_columns(medium: Medium, columns: Array, r: float, mu: Array, out: Array, visible: Array):
-    """Write the columns of rays from the observer to space; whether the ground is not in the way."""
+    """Write the columns of rays to space, and whether no ground is in the way."""
     for i in range(mu.size):
         start, start_mu = r, mu[i]
         visible[i] = True

@@ -20,7 +20,7 @@ from skybake.transport.kernel import kernel
 
 Table = npt.NDArray[np.float32]
 
-LATITUDES = 144
+LATITUDES = 120
 AZIMUTHS = 33
 AZIMUTHS_TWILIGHT = 97
 EDGE = 1e-7

@@ -29,18 +29,19 @@ def kernel(function: Callable[..., Any]) -> Any:
     and saves milliseconds a call, and the result has the same bits for any
     number of threads.
     """
-    options = {"nogil": True, "fastmath": FAST_MATH, "error_model": "numpy"}
+    options: dict[str, Any] = {"nogil": True, "fastmath": FAST_MATH, "error_model": "numpy"}
     directory = cache_directory()
     if directory is None:
         return numba.njit(**options)(function)
     # numba resolves its cache folder while it decorates and nowhere later, so
     # other users of numba in this process keep the folder that they chose.
-    previous = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(directory)
+    config: Any = numba.config
+    previous = config.CACHE_DIR
+    config.CACHE_DIR = str(directory)
     try:
-        dispatcher = numba.njit(cache=True, **options)(function)
+        dispatcher: Any = numba.njit(cache=True, **options)(function)
     finally:
-        numba.config.CACHE_DIR = previous
+        config.CACHE_DIR = previous
     stored = dispatcher._cache
     if hasattr(stored, "_load_overload"):
         stored.load_overload = functools.partial(_load_compiled, stored)

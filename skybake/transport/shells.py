@@ -45,7 +45,7 @@ def altitude_shells(medium: Medium, count: int = SHELL_COUNT) -> Array:
 
 def _smallest_scale_height(medium: Medium, altitude: Array) -> float:
     """Column over peak density of the constituent that is most confined. [km]"""
-    column = np.trapezoid(medium.density, altitude, axis=0)
+    column = np.asarray(np.trapezoid(medium.density, altitude, axis=0))
     peak = medium.density.max(axis=0)
     present = peak > 0.0
     if not present.any():
