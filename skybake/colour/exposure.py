@@ -60,6 +60,7 @@ _HIGHLIGHT = 2.0
 _SUN_FREE = 0.99
 _MOSTLY = 0.95
 _DARK = 0.01
+_PLANET = 0.8
 _NO_LIGHT = 1e-30
 _DARKEST_EV = -20.0
 
@@ -102,7 +103,7 @@ def auto_ev(luminance: npt.NDArray[np.floating]) -> float:
     bright_above = _weighted_quantile(sample[above], weights[above], _SUN_FREE)
     if bright == 0.0 and sample.any():
         # Seen from far away, the planet is less than a hundredth of the sky.
-        bright = _weighted_quantile(sample[sample > 0.0], weights[sample > 0.0], _SUN_FREE)
+        bright = _weighted_quantile(sample[sample > 0.0], weights[sample > 0.0], _PLANET)
     elif bright_above >= _DARK * bright:
         sample, weights, bright = sample[above], weights[above], bright_above
     lit = sample >= max(_DARK * bright, _NO_LIGHT)
