@@ -8,7 +8,7 @@ import numpy as np
 
 from skybake.optics.medium import Array
 
-MEMORY = 5
+MEMORY = 3
 
 
 class Anderson:
@@ -40,11 +40,11 @@ class Anderson:
         residuals = [g - x for x, g in zip(self._states, self._images, strict=True)]
         changes = np.stack([b - a for a, b in pairwise(residuals)], axis=1)
         moves = np.stack([b - a for a, b in pairwise(self._images)], axis=1)
-        normal = changes @ changes.transpose(0, 2, 1)
+        normal = (changes @ changes.transpose(0, 2, 1)).astype(float)
         trace = np.trace(normal, axis1=1, axis2=2)[:, None, None]
         # Nearly parallel residuals leave the weights undetermined; this keeps them small.
-        normal = normal + (1e-10 * trace + 1e-300) * np.eye(normal.shape[1])
-        right = changes @ residuals[-1][:, :, None]
-        weights = np.linalg.solve(normal, right)
+        normal = normal + (1e-7 * trace + 1e-300) * np.eye(normal.shape[1])
+        right = (changes @ residuals[-1][:, :, None]).astype(float)
+        weights = np.linalg.solve(normal, right).astype(image.dtype)
         mixed: Array = image - (moves.transpose(0, 2, 1) @ weights)[:, :, 0]
         return mixed

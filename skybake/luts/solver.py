@@ -32,12 +32,16 @@ ORDER = 10
 ALTITUDES = 24
 UPWARD = 10
 DOWNWARD = 5
-FIRST_SHELLS = 17
+FIRST_SHELLS = 15
 SHELLS = 13
-TOLERANCE = 1e-3
+TOLERANCE = 2e-3
 MAX_PASSES = 120
+
+LAST_JUDGED = math.radians(110.0)
+"""Solar zenith angle up to which the solution must converge; beyond it is night. [rad]"""
+
 ARC = math.radians(2.0)
-FIRST_ARC = math.radians(1.0)
+FIRST_ARC = math.radians(1.5)
 
 LANES = 16
 """The solver pads wavelengths to a multiple: loops of known length become plain vector code."""
@@ -131,13 +135,12 @@ def solve_field(cut: Truncation, columns: Array) -> DiffuseField:
     mixing = Anderson(first.ground.size)
     start = _state(first)
     state = start
+    matters = np.repeat(grid.sun_angle < LAST_JUDGED, first.ground.shape[1])
     for _ in range(MAX_PASSES):
         image = start + _state(_scatter(cut, field, grid))
         change = np.linalg.norm(image - state, axis=1) / np.maximum(
             np.linalg.norm(image, axis=1), 1e-300
         )
-        # A column far behind the shadow holds rounding errors of the lit ones.
-        matters = np.linalg.norm(image, axis=1) > 1e-9 * np.linalg.norm(image, axis=1).max()
         if change[matters].max() < TOLERANCE:
             return _keep_wavelengths(_field(first, image), wavelengths)
         state = mixing.step(state, image)
@@ -397,7 +400,7 @@ def _add_azimuth(fourier, node, weights, cosine, size, terms, out):
 def _state(field: DiffuseField) -> Array:
     """Field as one vector for each sun angle and wavelength, for the iteration."""
     columns = field.radiance.transpose(1, 3, 0, 2).reshape(field.ground.size, -1)
-    return np.concatenate([columns, field.ground.reshape(-1, 1)], axis=1, dtype=float)
+    return np.concatenate([columns, field.ground.reshape(-1, 1)], axis=1, dtype=np.float32)
 
 
 def _field(like: DiffuseField, state: Array) -> DiffuseField:
