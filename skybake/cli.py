@@ -26,6 +26,8 @@ class _CommandLine(click.Group):
 
     def main(self, *args: Any, **kwargs: Any) -> NoReturn:
         """Parse, run and exit."""
+        # Threads that numpy's linear algebra starts with cost more than they save here.
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
         kwargs["standalone_mode"] = False
         kwargs["prog_name"] = "skybake"
         with warnings.catch_warnings():

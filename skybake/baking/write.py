@@ -82,6 +82,7 @@ def bake(
     preview_ev: float | None = None,
     preview_view: str = "aces2",
     progress: Progress | None = None,
+    notice: Callable[[str], None] | None = None,
 ) -> Baked:
     """Bake one sky map.
 
@@ -102,6 +103,8 @@ def bake(
         Its rendering.
     progress : callable, optional
         Called with the share that is done, from 0 to 1.
+    notice : callable, optional
+        Called with a line for people where something takes long that later runs save.
 
     Returns
     -------
@@ -122,6 +125,8 @@ def bake(
     if preview is not None:
         check_preview(preview, preview_view)
     scene = Scene(planet, settings)
+    if notice is not None and not scene.sky.is_solved:
+        notice("solving for the light in this atmosphere, once")
     x, y, z = scene.sky.sun_direction.tolist()
     normal, horizontal = scene.sun_illuminance()
     sky_illuminance = scene.sky_illuminance()

@@ -176,6 +176,7 @@ def render(**options: Any) -> None:
             preview_ev=options["preview_ev"],
             preview_view=options["view"] or parameters.VIEWS[0],
             progress=progress,
+            notice=None if quiet else report.notice,
         )
     seconds = time.perf_counter() - started
     if options["as_json"]:

@@ -22,9 +22,14 @@ def announce(output: Path) -> None:
     from skybake.transport.kernel import is_warm
 
     if not is_warm():
-        click.echo("skybake: compiling kernels, once for this version", err=True)
+        notice("compiling kernels, once for this version")
     if not sys.stderr.isatty():
-        click.echo(f"skybake: baking {output}", err=True)
+        notice(f"baking {output}")
+
+
+def notice(line: str) -> None:
+    """Say what takes long."""
+    click.echo(f"skybake: {line}", err=True)
 
 
 @contextmanager

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from skybake.errors import InputError
-from skybake.luts.atmosphere import Atmosphere, load_atmosphere
+from skybake.luts.atmosphere import Atmosphere, is_stored, load_atmosphere
 from skybake.luts.ray import RayLight, trace_rays
 from skybake.optics.lobes import Lobes, split_phase
 from skybake.optics.medium import Array, build_medium
@@ -202,11 +202,20 @@ class Sky:
             return RayLight(*march_rays(self.medium, r, mu, mu_s, nu))
         return trace_rays(*self.atmosphere[:4], r, mu, mu_s, nu)
 
+    @property
+    def is_solved(self) -> bool:
+        """Whether the tables of this atmosphere lie on disk."""
+        return is_stored(self.medium, self._table_method)
+
+    @property
+    def _table_method(self) -> str:
+        # Marching needs no tables; its sun disc looks up the columns that all methods share.
+        return "full" if self.method == "full" else "hillaire"
+
     @cached_property
     def atmosphere(self) -> Atmosphere:
         """The tables of the air, which depend neither on the observer nor on the sun."""
-        # Marching needs none; its sun disc looks up the columns that all methods share.
-        return load_atmosphere(self.medium, "full" if self.method == "full" else "hillaire")
+        return load_atmosphere(self.medium, self._table_method)
 
     @property
     def _phase(self) -> Array:
