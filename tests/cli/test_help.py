@@ -94,13 +94,19 @@ def test_every_option_is_documented_and_every_documented_option_exists(path, com
     _, heading, rest = DOCUMENT.read_text("utf-8").partition(f"## skybake {' '.join(path)}\n")
     assert heading
     section = rest.partition("\n## ")[0]
-    documented = set(re.findall(r"^\| `(?:-o, )?(--[a-z-]+)", section, re.MULTILINE))
-    options = {p.opts[-1] for p in command.params if isinstance(p, click.Option)}
-    assert documented == options
-    for option in command.params:
-        if isinstance(option, click.Option) and isinstance(option.type, click.Choice):
-            for choice in option.type.choices:
-                assert f"`{choice}`" in section
+    rows = {}
+    for line in re.findall(r"^\| `(?:-o, )?(--.*) \|$", section, re.MULTILINE):
+        name, *cells = re.split(r" *(?<!\\)\| *", line)
+        rows[re.split("[ `]", name)[0]] = cells
+    options = [option for option in command.params if isinstance(option, click.Option)]
+    assert set(rows) == {option.opts[-1] for option in options}
+    for option in options:
+        default, meaning = rows[option.opts[-1]]
+        shown = option.show_default if isinstance(option.show_default, str) else option.default
+        if isinstance(shown, str) and " " not in shown:
+            assert default == f"`{shown}`"
+        for choice in getattr(option.type, "choices", ()):
+            assert f"`{choice}`" in meaning
 
 
 @pytest.mark.parametrize(("path", "command"), [((), main), *COMMANDS])
