@@ -1,0 +1,246 @@
+"""The figures of docs/accuracy.md: light against independent tables, measurements and itself."""
+
+import csv
+import functools
+import io
+import math
+
+import numpy as np
+import pytest
+
+import skybake
+from skybake.baking.probe import Directions, probe
+from skybake.baking.scene import Scene, luminous_weights
+from skybake.formats.reader import read_image
+from skybake.preset import load_preset
+from skybake.sky.sky import Sky
+from skybake.sky.view import horizon_angles
+from tests.cli.runs import run
+from tests.comparison import (
+    compare,
+    counted,
+    horizon_distance,
+    places,
+    radiance_at,
+    rows_at,
+    sun_distance,
+)
+from tests.skies import truth_sky, without_diffuse_light
+from tests.truth import TRUTH_WAVELENGTHS, load_truth
+
+EARTHS = ("EARTH_A", "EARTH_HAZE")
+MARS = ("MARS_A",)
+GROUND, AIRLINER, ORBIT = 0.001, 10.0, 400.0
+DAY = (90.0, 60.0, 35.0, 30.0, 12.0, 10.0, 5.0, 4.0, 2.0, 0.0)
+TWILIGHT = (-2.0, -3.0, -4.0, -5.0, -6.0)
+DEEP = (-9.0, -12.0)
+BANDS = {"day": DAY, "twilight": TWILIGHT, "deep twilight": DEEP}
+
+FIGURES = {
+    ("earth", "day"): 0.005,
+    ("earth", "twilight"): 0.01,
+    ("earth", "deep twilight"): 0.03,
+    ("mars", "day"): 0.008,
+    ("mars", "twilight"): 0.02,
+    ("mars", "deep twilight"): 0.03,
+}
+WORLDS = {"earth": EARTHS, "mars": MARS}
+ALTITUDES = (GROUND, AIRLINER, ORBIT)
+
+
+@functools.cache
+def full(name, altitude, band):
+    """Errors of the default method, or None where a table has no such place."""
+    if not any(h == altitude and sun in BANDS[band] for h, sun in places(load_truth(name))):
+        return None
+    return compare(name, "full", (altitude,), BANDS[band])
+
+
+def rms(names, altitudes, band):
+    parts = [full(name, h, band) for name in names for h in altitudes]
+    squares = [part.error**2 - part.noise**2 for part in parts if part]
+    return math.sqrt(max(0.0, np.concatenate(squares).mean()))
+
+
+@pytest.mark.parametrize("sun", [60.0, 10.0, 2.0, -4.0, -9.0])
+def test_earth_keeps_its_figure_on_the_ground_and_in_an_airliner(sun):
+    comparison = compare("EARTH_A", "full", (GROUND, AIRLINER), (sun,))
+    band = next(band for band, suns in BANDS.items() if sun in suns)
+    assert comparison.rms < FIGURES["earth", band]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("world", "band"), FIGURES)
+def test_all_altitudes_together_keep_the_figure(world, band):
+    assert rms(WORLDS[world], ALTITUDES, band) < FIGURES[world, band]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("altitude", "band"),
+    [
+        pytest.param(
+            altitude,
+            band,
+            marks=pytest.mark.xfail(
+                (altitude, band) == (AIRLINER, "deep twilight"),
+                reason="4.2 %: rows of the table share their noise of 3 to 5 % (docs/accuracy.md)",
+            ),
+        )
+        for altitude in ALTITUDES
+        for band in BANDS
+    ],
+)
+def test_every_altitude_of_earth_keeps_the_figure_by_itself(altitude, band):
+    assert rms(EARTHS, (altitude,), band) < FIGURES["earth", band]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", EARTHS + MARS)
+def test_no_direction_by_day_is_off_by_more_than_3_percent(name):
+    """Beyond three standard errors, 1 deg from the horizon and 4 deg from the sun."""
+    parts = [full(name, altitude, "day") for altitude in ALTITUDES]
+    seen = 0
+    for part in filter(None, parts):
+        away = (horizon_distance(name, part.rows) > 1.0) & (sun_distance(part.rows) > 4.0)
+        excess = np.abs(part.error[away]) - 3.0 * part.noise[away]
+        assert excess.max() < 0.03
+        seen += away.sum()
+    assert seen > 700
+
+
+@pytest.mark.parametrize("name", EARTHS + MARS)
+def test_first_order_alone_is_within_2_per_mille(name):
+    table = load_truth(name)
+    squares = []
+    for altitude, sun in places(table):
+        rows = counted(rows_at(table, altitude, sun), "order1")
+        sky = without_diffuse_light(truth_sky(name, sun, altitude, "hillaire"))
+        squares.append((radiance_at(sky, rows) / rows["order1"] - 1.0) ** 2)
+    assert math.sqrt(np.concatenate(squares).mean()) < 0.002
+
+
+def test_probe_of_the_preset_gives_the_table(tmp_path):
+    rows = rows_at(load_truth("EARTH_A"), AIRLINER, 10.0)
+    rows = counted(rows)
+    names = ("view_zenith_deg", "relative_azimuth_deg")
+    views = sorted({tuple(float(row[name]) for name in names) for row in rows})
+    source = tmp_path / "views.csv"
+    lines = [",".join(names), *(f"{zenith:g},{azimuth:g}" for zenith, azimuth in views)]
+    source.write_text("\n".join(lines) + "\n")
+    command = "--preset earth-hillaire2020 --sun 10deg --altitude 10km --directions - "
+    command += "--wavelengths 680,550,440 --per-irradiance"
+    with source.open() as stdin:
+        status, output, errors = run("probe", *command.split(), stdin=stdin)
+    assert (status, errors) == (0, "")
+    found = {}
+    for line in csv.DictReader(io.StringIO(output)):
+        view = tuple(float(line[name]) for name in names)
+        for wavelength in TRUTH_WAVELENGTHS:
+            found[*view, wavelength] = float(line[f"radiance_{wavelength:g}nm"])
+    shown = np.array([found[*(row[name] for name in names), row["wavelength_nm"]] for row in rows])
+    error = shown / rows["radiance"] - 1.0
+    assert len(found) == 3 * len(views)
+    assert math.sqrt(np.mean(error**2)) < 0.003
+
+
+def mapped_and_probed(planet, altitude, sun, tmp_path):
+    """Luminances of texels in a map, and of the same directions by the probe."""
+    path, width, height = tmp_path / "map.exr", 256, 128
+    settings = skybake.MapSettings(
+        math.radians(sun),
+        altitude=altitude,
+        width=width,
+        colorspace="xyz",
+        units="nits",
+        pixel="float",
+        sun_disc="exclude",
+    )
+    skybake.bake(planet, path, settings)
+    pixels, _ = read_image(path)
+    zenith = math.pi * (np.arange(height) + 0.5) / height
+    medium = Sky(planet, 0.0, altitude).medium
+    r = medium.r_bottom + altitude
+    first, horizon = horizon_angles(r, medium.r_bottom, medium.r_top)
+    clear = 2.0 * math.pi / height
+    usable = np.abs(zenith - horizon) > clear
+    if first > 0.0:
+        usable &= zenith > first + clear
+    random = np.random.default_rng(3)
+    row = random.choice(np.flatnonzero(usable), 600)
+    column = random.integers(0, width, 600)
+    azimuth = 2.0 * math.pi * (column + 0.5) / width - math.pi
+    text = tuple((f"{a}", f"{b}") for a, b in zip(zenith[row], azimuth, strict=True))
+    views = Directions(text, zenith[row], azimuth)
+    answer = probe(
+        load_preset(planet), views, sun_elevation=settings.sun_elevation, altitude=altitude
+    )
+    luminance = [float(line["luminance_cd_m2"]) for line in csv.DictReader(io.StringIO(answer))]
+    return pixels[row, column, 1].astype(float), np.array(luminance)
+
+
+@pytest.mark.parametrize(
+    ("planet", "altitude", "sun"),
+    [
+        pytest.param(
+            planet,
+            altitude,
+            sun,
+            marks=()
+            if (planet, altitude, sun) in {("earth", 0.0, -4), ("mars", 10.0, 5)}
+            else pytest.mark.slow,
+        )
+        for planet in ("earth", "mars")
+        for altitude in (0.0, 10.0, 400.0)
+        for sun in (30, 5, -4)
+    ],
+)
+def test_texels_agree_with_probe_within_half_a_percent(planet, altitude, sun, tmp_path):
+    mapped, probed = mapped_and_probed(planet, altitude, sun, tmp_path)
+    bright = probed > 1e-3 * probed.max()
+    assert bright.sum() > 200
+    assert np.abs(mapped[bright] / probed[bright] - 1.0).max() < 0.005
+
+
+@pytest.mark.parametrize(("sun", "published"), [(-4, 36.0), (-6, 3.57), (-8, 0.353), (-10, 0.042)])
+def test_twilight_on_the_ground_is_as_bright_as_published(sun, published):
+    """Global horizontal illuminances of a clear sky, from below the horizon's sun. [lx]"""
+    scene = Scene(load_preset("earth"), skybake.MapSettings(math.radians(sun)))
+    total = scene.sky_illuminance() + scene.sun_illuminance()[1]
+    assert total == pytest.approx(published, rel=0.25)
+
+
+@functools.cache
+def zenith_luminance(planet):
+    """Of suns from -4 to -18 deg in steps of 1/4 deg. [cd m^-2]"""
+    sky = Sky(planet, 0.0)
+    luminous = luminous_weights(sky)[:, 1]
+    luminance = []
+    for elevation in np.radians(np.arange(-4.0, -18.01, -0.25)):
+        sky.sun_elevation = elevation
+        up = sky.radiance_per_irradiance(np.ones(1), np.array([math.sin(elevation)]))
+        luminance.append(float(up[0] @ luminous))
+    return np.array(luminance)
+
+
+@pytest.mark.parametrize("planet", ["earth", "mars"])
+def test_zenith_only_darkens_through_the_twilight(planet):
+    luminance = zenith_luminance(planet)
+    assert luminance[-1] > 0.0
+    assert (np.diff(luminance) < 0.0).all()
+
+
+@pytest.mark.parametrize(
+    "planet",
+    [
+        "earth",
+        pytest.param(
+            "mars", marks=pytest.mark.xfail(reason="1.7 % at -10 deg, with dust up to the top")
+        ),
+    ],
+)
+def test_twilight_has_no_steps_of_a_percent(planet):
+    """Each luminance against the cubic through its four neighbours."""
+    x = np.log(zenith_luminance(planet))
+    between = (4.0 * (x[1:-3] + x[3:-1]) - x[:-4] - x[4:]) / 6.0
+    assert np.abs(between - x[2:-2]).max() < 0.01
