@@ -172,7 +172,7 @@ def add_diffuse(field, r_bottom, r, mu, mu_s, nu, samples, count, scratch, out):
     for k in range(wavelengths):
         whole[k] = 0.0
     for n in range(0, count, 2):
-        fill_scattering(field, samples, n, n + 2, 1, scattering)
+        fill_scattering(field, samples, n, n + 2, np.int64(1), scattering)
         for k in range(wavelengths):
             whole[k] += scattering[0, k]
     # The field is smooth within a step, so that its two samples share a lookup halfway.

@@ -307,7 +307,7 @@ def _scatter_rows(medium, shells, field, grid, suns, around, samples, first, las
         for k in range(wavelengths):
             whole[k] = 0.0
         for n in range(count):
-            fill_scattering(field, samples, n, n + 1, 1, scattering)
+            fill_scattering(field, samples, n, n + 1, np.int64(1), scattering)
             for k in range(wavelengths):
                 whole[k] += scattering[0, k]
         for n in range(count):
@@ -409,5 +409,5 @@ def _field(like: DiffuseField, state: Array) -> DiffuseField:
     columns = state[:, :-1].reshape(suns, wavelengths, altitudes, moments)
     return like._replace(
         radiance=np.ascontiguousarray(columns.transpose(2, 0, 3, 1), dtype=np.float32),
-        ground=state[:, -1].reshape(suns, wavelengths).copy(),
+        ground=state[:, -1].reshape(suns, wavelengths).astype(float),
     )

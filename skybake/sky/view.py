@@ -88,10 +88,10 @@ def _cubic(x, size, out):
 
 
 @kernel
-def _latitude_weights(view, below, zenith, out):
+def _latitude_weights(view, side, zenith, out):
     """Weights of four latitudes; at a table's edge the missing node is extrapolated."""
     size = view.table.shape[1]
-    if below:
+    if side == 1:
         span = math.pi - view.zenith_horizon
         x = math.sqrt(max(zenith - view.zenith_horizon, 0.0) / span)
     else:
@@ -112,17 +112,17 @@ def _latitude_weights(view, below, zenith, out):
 
 
 @kernel
-def _fill_latitude(view, below, zenith, j_first, j_last, weights, out):
+def _fill_latitude(view, side, zenith, j_first, j_last, weights, out):
     """Interpolate the table at one zenith angle into rows of `out`, (azimuth + 2, channel).
 
     Row j holds azimuth j - 1; rows 0 and -1 mirror the neighbours of the sun's
     meridian, about which the sky is symmetric.
     """
-    i = _latitude_weights(view, below, zenith, weights)
+    i = _latitude_weights(view, side, zenith, weights)
     azimuths, channels = view.table.shape[2], view.table.shape[3]
     a, b = np.float32(weights[0]), np.float32(weights[1])
     c, d = np.float32(weights[2]), np.float32(weights[3])
-    table = view.table[1 if below else 0]
+    table = view.table[side]
     for row in range(j_first, j_last):
         j = azimuths - 1 - abs(azimuths - 1 - abs(row - 1))
         for k in range(channels):
@@ -212,10 +212,12 @@ def fill_directions(view, zenith, azimuth, height, first, last, out):
                 along_squared = math.sin(0.5 * (theta - view.sun_zenith)) ** 2
                 sines = math.sin(theta) * math.sin(view.sun_zenith)
                 j_first, j_last = (0, azimuths + 2) if shares_zenith else (row, row + 4)
-                if above > 0.0:
-                    _fill_latitude(view, False, theta_above, j_first, j_last, weights, latitude[0])
-                if below > 0.0:
-                    _fill_latitude(view, True, theta_below, j_first, j_last, weights, latitude[1])
+                for side in range(2):
+                    if (above if side == 0 else below) > 0.0:
+                        theta_here = theta_above if side == 0 else theta_below
+                        _fill_latitude(
+                            view, side, theta_here, j_first, j_last, weights, latitude[side]
+                        )
             _cubic(node[j], azimuths, weights)
             _fill_curves(view, min(along_squared + sines * across_squared[j], 1.0), curves)
             pixel = out[i - first, j]

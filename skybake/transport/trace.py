@@ -145,7 +145,8 @@ def trace(medium, shells, max_arc, r, mu, mu_s, nu, samples):
     closest_squared = squared_closest_approach(r, mu)
     layer = _layer_at(shells, radius_at(r, mu, t) - medium.r_bottom, t < t_closest)
     arc = max_arc * medium.r_bottom
-    n = 0
+    # A plain 0 would have numba compile `_add_step` for that literal, and once more.
+    n = np.int64(0)
     while t < t_last and n + 2 <= MAX_SAMPLES:
         descending = t < t_closest
         t_shell, next_layer = _next_shell(
