@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -38,6 +39,15 @@ class Comparison(NamedTuple):
     def rms(self) -> float:
         """Root mean square error, less what the table's own noise adds to it."""
         return math.sqrt(max(0.0, np.mean(self.error**2 - self.noise**2)))
+
+    def where(self, mask: np.ndarray) -> Comparison:
+        """Only the rows that a mask of shape (row,) selects."""
+        return Comparison(self.rows[mask], self.error[mask], self.noise[mask])
+
+
+def join(parts: Sequence[Comparison]) -> Comparison:
+    """All rows of several comparisons."""
+    return Comparison(*map(np.concatenate, zip(*parts, strict=True)))
 
 
 def counted(rows: np.ndarray, column: str = "radiance") -> np.ndarray:

@@ -202,12 +202,12 @@ def test_texels_agree_with_probe_within_half_a_percent(planet, altitude, sun, tm
     assert np.abs(mapped[bright] / probed[bright] - 1.0).max() < 0.005
 
 
-@pytest.mark.parametrize(("sun", "published"), [(-4, 36.0), (-6, 3.57), (-8, 0.353), (-10, 0.042)])
-def test_twilight_on_the_ground_is_as_bright_as_published(sun, published):
-    """Global horizontal illuminances of a clear sky, from below the horizon's sun. [lx]"""
+@pytest.mark.parametrize(("sun", "traced"), [(-4, 36.0), (-6, 3.57), (-8, 0.353), (-10, 0.042)])
+def test_twilight_on_the_ground_is_as_bright_as_clear_air_by_monte_carlo(sun, traced):
+    """A separate spherical Monte Carlo of air and ozone; Seidelmann's are 0 to 17 % lower. [lx]"""
     scene = Scene(load_preset("earth"), skybake.MapSettings(math.radians(sun)))
     total = scene.sky_illuminance() + scene.sun_illuminance()[1]
-    assert total == pytest.approx(published, rel=0.25)
+    assert total == pytest.approx(traced, rel=0.25)
 
 
 @functools.cache
