@@ -14,3 +14,9 @@ os.environ.setdefault(
 # Kernels compile within the first example, and a run must not depend on luck.
 settings.register_profile("skybake", deadline=None, derandomize=True, database=None)
 settings.load_profile("skybake")
+
+
+def pytest_addoption(parser):
+    parser.addoption(
+        "--update-goldens", action="store_true", help="write the maps of tests/goldens anew"
+    )
