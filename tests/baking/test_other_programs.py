@@ -99,7 +99,7 @@ def test_cmgen_takes_our_faces_from_our_equirect_map(tmp_path, suffix):
     run(program("cmgen"), "-q", *extract, tmp_path / f"flat{suffix}")
     for face, file in zip(cubemap.FACES, baked.files, strict=True):
         theirs = pixels(tmp_path / "theirs" / "flat" / f"{face}.exr")
-        assert_same_face(theirs, pixels(file), 0.03, 0.1, face)
+        assert_same_face(theirs, pixels(file), 0.03, 0.15, face)
 
 
 def test_cmgen_reads_our_cross(tmp_path):
@@ -110,4 +110,4 @@ def test_cmgen_reads_our_cross(tmp_path):
     run(program("cmgen"), "-q", *extract, tmp_path / "cross.exr")
     for face, file in zip(cubemap.FACES, baked.files, strict=True):
         theirs = pixels(tmp_path / "theirs" / "cross" / f"{face}.exr")
-        assert_same_face(theirs, pixels(file), 0.03, 0.1, face)
+        assert_same_face(theirs, pixels(file), 0.03, 0.15, face)
