@@ -84,7 +84,7 @@ def test_all_altitudes_together_keep_the_figure(world, band):
             band,
             marks=pytest.mark.xfail(
                 (altitude, band) == (AIRLINER, "deep twilight"),
-                reason="3.9 to 4.2 %: rows of the table share their noise of 3 to 5 % (docs/accuracy.md)",
+                reason="3.9 to 4.2 %: rows of the table share their noise of 3 %",
             ),
         )
         for altitude in ALTITUDES
