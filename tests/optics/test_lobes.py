@@ -1,0 +1,39 @@
+import numpy as np
+import pytest
+
+from skybake.optics.lobes import TOLERANCE, split_phase
+from skybake.optics.medium import build_medium
+from skybake.optics.phase import scattering_angles
+from skybake.preset import load_preset
+from skybake.sky.sky import WAVELENGTHS
+
+
+def phase_of(preset):
+    return build_medium(load_preset(preset), WAVELENGTHS).phase
+
+
+@pytest.mark.parametrize("preset", ["earth", "mars"])
+def test_lobes_restore_each_phase_function(preset):
+    phase = phase_of(preset)
+    lobes = split_phase(phase, [[c] for c in range(len(phase))])
+    restored = np.einsum("cwq,qa->caw", lobes.weights, lobes.curves)
+    rms = np.sqrt(np.mean(phase**2, axis=2, keepdims=True))
+    assert (np.abs(restored - phase) / rms).max() <= TOLERANCE * (1.0 + 1e-9)
+
+
+def test_an_asymmetry_that_varies_with_wavelength_needs_few_lobes():
+    lobes = split_phase(phase_of("earth"), [[0], [1], [2]])
+    assert lobes.curves.shape[0] <= 8
+
+
+def test_first_lobe_is_one_for_light_without_a_phase_function():
+    lobes = split_phase(phase_of("mars"), [[0], [1]])
+    np.testing.assert_array_equal(lobes.curves[0], 1.0)
+
+
+def test_isotropic_scattering_needs_no_lobe_of_its_own():
+    isotropic = np.full((1, scattering_angles().size, 4), 0.25 / np.pi)
+    lobes = split_phase(isotropic, [[0]])
+    assert lobes.curves.shape[0] <= 2
+    restored = np.einsum("cwq,qa->caw", lobes.weights, lobes.curves)
+    np.testing.assert_allclose(restored, isotropic, rtol=2e-3)
