@@ -16,8 +16,9 @@ import numpy as np
 
 from skybake.luts.closure import close_field
 from skybake.luts.field import DiffuseField, sun_bins
+from skybake.luts.grid import ORDER
 from skybake.luts.harmonics import build_harmonics
-from skybake.luts.solver import ORDER, solve_field
+from skybake.luts.solver import solve_field
 from skybake.luts.transmittance import build_columns
 from skybake.optics.legendre import Truncation, channel_groups, keep_peaks, truncate_peaks
 from skybake.optics.lobes import Lobes, split_phase

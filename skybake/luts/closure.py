@@ -11,8 +11,8 @@ import math
 import numpy as np
 
 from skybake.luts.field import DiffuseField
+from skybake.luts.grid import empty_field, sun_angles
 from skybake.luts.ray import trace_rays
-from skybake.luts.solver import empty_field, sun_angles
 from skybake.optics.legendre import Truncation
 from skybake.optics.medium import Array
 from skybake.transport.shells import altitude_shells

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -15,10 +14,10 @@ from skybake.luts.field import (
     count_degrees,
     fill_ground_irradiance,
     fill_scattering,
-    sun_bins,
     sun_weights,
 )
-from skybake.luts.harmonics import build_harmonics, fill_harmonics
+from skybake.luts.grid import ORDER, Grid, build_grid, empty_field, project
+from skybake.luts.harmonics import fill_harmonics
 from skybake.luts.ray import trace_rays
 from skybake.optics.legendre import Truncation, legendre_polynomials
 from skybake.optics.medium import Array, altitude_nodes
@@ -26,12 +25,6 @@ from skybake.transport.kernel import kernel, run_rows
 from skybake.transport.shells import altitude_shells
 from skybake.transport.trace import allocate_samples, trace
 
-ORDER = 10
-"""Highest harmonic of the diffuse field; forward peaks beyond it are truncated."""
-
-ALTITUDES = 24
-UPWARD = 10
-DOWNWARD = 5
 FIRST_SHELLS = 15
 SHELLS = 13
 TOLERANCE = 4e-3
@@ -54,60 +47,6 @@ FIRST_ARC = math.radians(1.5)
 
 LANES = 16
 """The solver pads wavelengths to a multiple: loops of known length become plain vector code."""
-
-# Spacing of the sun's zenith angles: fine where the planet's shadow passes through
-# the air, and not too wide at the zenith, near which moments go as sin(angle)**m.
-_SPACING_AT = (0.0, 50.0, 75.0, 86.0, 90.0, 104.0, 112.0, 125.0, 180.0)
-_SPACING = (10.0, 8.0, 5.0, 1.6, 0.8, 0.8, 1.0, 4.0, 10.0)
-
-
-class Grid(NamedTuple):
-    """Nodes of the solver.
-
-    Attributes
-    ----------
-    altitude : ndarray, shape (altitude,)
-        [km]
-    sun_angle : ndarray, shape (sun,)
-        [rad]
-    mu, weight : ndarray, shape (altitude, polar)
-        Zenith cosines of the directions at each altitude and their shares of
-        d mu, apart above and below the local horizon.
-    azimuth : ndarray, shape (azimuth,)
-        Midpoints of half the circle. [rad]
-    """
-
-    altitude: Array
-    sun_angle: Array
-    mu: Array
-    weight: Array
-    azimuth: Array
-
-
-def build_grid(cut: Truncation) -> Grid:
-    """Choose the solver's nodes for an atmosphere."""
-    medium = cut.medium
-    altitude = altitude_shells(medium, ALTITUDES)
-    mu, weight = zip(
-        *(_split_directions(medium.r_bottom, h, UPWARD, DOWNWARD) for h in altitude), strict=True
-    )
-    dip = math.acos(medium.r_bottom / medium.r_top)
-    return Grid(
-        altitude=altitude,
-        sun_angle=sun_angles(min(math.pi, math.pi / 2.0 + max(2.5 * dip, math.radians(28.0)))),
-        mu=np.stack(mu),
-        weight=np.stack(weight),
-        azimuth=math.pi * (np.arange(ORDER + 1) + 0.5) / (ORDER + 1),
-    )
-
-
-def sun_angles(last: float) -> Array:
-    """Solar zenith angles of the field's nodes, from 0 to `last`. [rad]"""
-    angles = [0.0]
-    while angles[-1] < math.degrees(last):
-        middle = angles[-1] + 0.5 * np.interp(angles[-1], _SPACING_AT, _SPACING)
-        angles.append(angles[-1] + float(np.interp(middle, _SPACING_AT, _SPACING)))
-    return np.radians(np.array(angles) * math.degrees(last) / angles[-1])
 
 
 def solve_field(cut: Truncation, columns: Array) -> DiffuseField:
@@ -211,35 +150,6 @@ def _keep_wavelengths(field: DiffuseField, count: int) -> DiffuseField:
     )
 
 
-def _split_directions(r_bottom: float, h: float, upward: int, downward: int) -> tuple[Array, Array]:
-    """Gauss nodes in mu, apart above and below the horizon and crowded toward it."""
-    mu_horizon = -math.sqrt(max(0.0, 1.0 - (r_bottom / (r_bottom + h)) ** 2))
-    mu, weight = [], []
-    for count, span in ((upward, 1.0 - mu_horizon), (downward, -1.0 - mu_horizon)):
-        x, w = np.polynomial.legendre.leggauss(count)
-        x, w = 0.5 * (x + 1.0), 0.5 * w
-        mu.append(mu_horizon + span * x**1.5)
-        weight.append(abs(span) * 1.5 * np.sqrt(x) * w)
-    return np.concatenate(mu), np.concatenate(weight)
-
-
-def empty_field(cut: Truncation, altitude: Array, sun_angle: Array, order: int) -> DiffuseField:
-    """Field without light on given nodes."""
-    harmonics = build_harmonics(order)
-    wavelengths = cut.moments.shape[2]
-    return DiffuseField(
-        harmonics=harmonics,
-        altitude=altitude,
-        sun_angle=sun_angle,
-        sun_bin=sun_bins(sun_angle),
-        source=np.ascontiguousarray(cut.medium.scattering[:, None] * cut.moments[:, : order + 1]),
-        radiance=np.zeros(
-            (altitude.size, sun_angle.size, harmonics.degree.size, wavelengths), np.float32
-        ),
-        ground=np.zeros((sun_angle.size, wavelengths)),
-    )
-
-
 def _first_order(cut: Truncation, columns: Array, grid: Grid) -> DiffuseField:
     """Moments of the light scattered or reflected exactly once."""
     base = cut._replace(peaked=cut.peaked[:0], phase=cut.medium.phase)
@@ -269,30 +179,13 @@ def _first_order(cut: Truncation, columns: Array, grid: Grid) -> DiffuseField:
         radiance = light.diffuse
         for c in range(constituents):
             radiance += light.single[:, c] * (polynomials.T @ series[c])
-        _project(grid, i, radiance.reshape(*mu.shape, -1), field)
+        project(grid, i, radiance.reshape(*mu.shape, -1), field)
     return field
 
 
 def _radius(cut: Truncation, altitude: float) -> float:
     """Radius of a node; one on the ground is lifted, for its rays to see the sky."""
     return cut.medium.r_bottom + max(altitude, 1e-8)
-
-
-def _project(grid: Grid, i: int, radiance: Array, field: DiffuseField) -> None:
-    """Write the moments of the radiance at altitude `i`, (polar, sun, azimuth, wavelength)."""
-    order = field.harmonics.order
-    polar = np.empty((grid.mu.shape[1], field.harmonics.degree.size))
-    for a, mu in enumerate(grid.mu[i]):
-        fill_harmonics(field.harmonics, mu, polar[a])
-    m = np.concatenate([np.full(order + 1 - m, m) for m in range(order + 1)])
-    around = 2.0 * math.pi / grid.azimuth.size * np.cos(np.outer(m, grid.azimuth))
-    basis = (polar * grid.weight[i][:, None]).T[:, :, None] * around[:, None, :]
-    moments = np.tensordot(basis, radiance, axes=([1, 2], [0, 2]))
-    field.radiance[i] = moments.transpose(1, 0, 2)
-    if i == 0:
-        up = slice(0, UPWARD)
-        flux = grid.weight[0][up] * grid.mu[0][up] * 2.0 * math.pi
-        field.ground[...] = np.tensordot(flux, radiance[up].mean(axis=2), axes=1)
 
 
 def _scatter(cut: Truncation, field: DiffuseField, grid: Grid) -> DiffuseField:
@@ -312,7 +205,7 @@ def _scatter(cut: Truncation, field: DiffuseField, grid: Grid) -> DiffuseField:
         radiance=np.empty_like(field.radiance), ground=np.empty_like(field.ground)
     )
     for i in range(grid.altitude.size):
-        _project(grid, i, out[i], scattered)
+        project(grid, i, out[i], scattered)
     return scattered
 
 

@@ -1,0 +1,133 @@
+"""Nodes of the solver: altitudes, sun angles and directions, and moments over them."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from skybake.luts.field import DiffuseField, sun_bins
+from skybake.luts.harmonics import build_harmonics, fill_harmonics
+from skybake.optics.legendre import Truncation
+from skybake.optics.medium import Array
+from skybake.transport.shells import altitude_shells
+
+ORDER = 10
+"""Highest harmonic of the diffuse field; forward peaks beyond it are truncated."""
+
+ALTITUDES = 24
+UPWARD = 10
+DOWNWARD = 5
+
+# Spacing of the sun's zenith angles: fine where the planet's shadow passes through
+# the air, and not too wide at the zenith, near which moments go as sin(angle)**m.
+_SPACING_AT = (0.0, 50.0, 75.0, 86.0, 90.0, 104.0, 112.0, 125.0, 180.0)
+_SPACING = (10.0, 8.0, 5.0, 1.6, 0.8, 0.8, 1.0, 4.0, 10.0)
+
+
+class Grid(NamedTuple):
+    """Nodes of the solver.
+
+    Attributes
+    ----------
+    altitude : ndarray, shape (altitude,)
+        [km]
+    sun_angle : ndarray, shape (sun,)
+        [rad]
+    mu, weight : ndarray, shape (altitude, polar)
+        Zenith cosines of the directions at each altitude and their shares of
+        d mu, apart above and below the local horizon.
+    azimuth : ndarray, shape (azimuth,)
+        Midpoints of half the circle. [rad]
+    """
+
+    altitude: Array
+    sun_angle: Array
+    mu: Array
+    weight: Array
+    azimuth: Array
+
+
+def build_grid(cut: Truncation) -> Grid:
+    """Choose the solver's nodes for an atmosphere."""
+    medium = cut.medium
+    altitude = altitude_shells(medium, ALTITUDES)
+    mu, weight = zip(
+        *(_split_directions(medium.r_bottom, h, UPWARD, DOWNWARD) for h in altitude), strict=True
+    )
+    dip = math.acos(medium.r_bottom / medium.r_top)
+    return Grid(
+        altitude=altitude,
+        sun_angle=sun_angles(min(math.pi, math.pi / 2.0 + max(2.5 * dip, math.radians(28.0)))),
+        mu=np.stack(mu),
+        weight=np.stack(weight),
+        azimuth=math.pi * (np.arange(ORDER + 1) + 0.5) / (ORDER + 1),
+    )
+
+
+def sun_angles(last: float) -> Array:
+    """Solar zenith angles of the field's nodes, from 0 to `last`. [rad]"""
+    angles = [0.0]
+    while angles[-1] < math.degrees(last):
+        middle = angles[-1] + 0.5 * np.interp(angles[-1], _SPACING_AT, _SPACING)
+        angles.append(angles[-1] + float(np.interp(middle, _SPACING_AT, _SPACING)))
+    return np.radians(np.array(angles) * math.degrees(last) / angles[-1])
+
+
+def _split_directions(r_bottom: float, h: float, upward: int, downward: int) -> tuple[Array, Array]:
+    """Gauss nodes in mu, apart above and below the horizon and crowded toward it."""
+    mu_horizon = -math.sqrt(max(0.0, 1.0 - (r_bottom / (r_bottom + h)) ** 2))
+    mu, weight = [], []
+    for count, span in ((upward, 1.0 - mu_horizon), (downward, -1.0 - mu_horizon)):
+        x, w = np.polynomial.legendre.leggauss(count)
+        x, w = 0.5 * (x + 1.0), 0.5 * w
+        mu.append(mu_horizon + span * x**1.5)
+        weight.append(abs(span) * 1.5 * np.sqrt(x) * w)
+    return np.concatenate(mu), np.concatenate(weight)
+
+
+def empty_field(cut: Truncation, altitude: Array, sun_angle: Array, order: int) -> DiffuseField:
+    """Field without light on given nodes."""
+    harmonics = build_harmonics(order)
+    wavelengths = cut.moments.shape[2]
+    return DiffuseField(
+        harmonics=harmonics,
+        altitude=altitude,
+        sun_angle=sun_angle,
+        sun_bin=sun_bins(sun_angle),
+        source=np.ascontiguousarray(cut.medium.scattering[:, None] * cut.moments[:, : order + 1]),
+        radiance=np.zeros(
+            (altitude.size, sun_angle.size, harmonics.degree.size, wavelengths), np.float32
+        ),
+        ground=np.zeros((sun_angle.size, wavelengths)),
+    )
+
+
+def project(grid: Grid, i: int, radiance: Array, field: DiffuseField) -> None:
+    """Write the moments of the radiance at one altitude of a field, and its ground's irradiance.
+
+    Parameters
+    ----------
+    grid : Grid
+        Nodes of the radiance.
+    i : int
+        The altitude's node.
+    radiance : ndarray, shape (polar, sun, azimuth, wavelength)
+        [sr⁻¹]
+    field : DiffuseField
+        Receives the moments.
+    """
+    order = field.harmonics.order
+    polar = np.empty((grid.mu.shape[1], field.harmonics.degree.size))
+    for a, mu in enumerate(grid.mu[i]):
+        fill_harmonics(field.harmonics, mu, polar[a])
+    m = np.concatenate([np.full(order + 1 - m, m) for m in range(order + 1)])
+    around = 2.0 * math.pi / grid.azimuth.size * np.cos(np.outer(m, grid.azimuth))
+    basis = (polar * grid.weight[i][:, None]).T[:, :, None] * around[:, None, :]
+    moments = np.tensordot(basis, radiance, axes=([1, 2], [0, 2]))
+    field.radiance[i] = moments.transpose(1, 0, 2)
+    if i == 0:
+        up = slice(0, UPWARD)
+        flux = grid.weight[0][up] * grid.mu[0][up] * 2.0 * math.pi
+        field.ground[...] = np.tensordot(flux, radiance[up].mean(axis=2), axes=1)
