@@ -95,3 +95,29 @@ def _parse(text: str, parse: Callable[[str], float]) -> float:
         return parse(text)
     except InputError as error:
         raise click.BadParameter(str(error)) from error
+
+
+preset_option = click.option(
+    "--preset",
+    default="earth",
+    show_default=True,
+    metavar="NAME|PATH",
+    help="World: a name from 'skybake presets list', or a TOML file of your own.",
+)
+sun_option = click.option(
+    "--sun",
+    "sun_elevation",
+    metavar="ANGLE",
+    type=elevation,
+    default="30deg",
+    show_default=True,
+    help="Geometric elevation of the sun's centre at the observer, -90deg to 90deg.",
+)
+altitude_option = click.option(
+    "--altitude",
+    metavar="LENGTH",
+    type=altitude,
+    default="0m",
+    show_default=True,
+    help="Of the observer above the ground.",
+)

@@ -23,30 +23,9 @@ def _wavelengths(text: str) -> tuple[float, ...]:
 
 
 @click.command()
-@click.option(
-    "--preset",
-    default="earth",
-    show_default=True,
-    metavar="NAME|PATH",
-    help="World: a name from 'skybake presets list', or a TOML file of your own.",
-)
-@click.option(
-    "--sun",
-    "sun_elevation",
-    metavar="ANGLE",
-    type=parameters.elevation,
-    default="30deg",
-    show_default=True,
-    help="Geometric elevation of the sun's centre at the observer, -90deg to 90deg.",
-)
-@click.option(
-    "--altitude",
-    metavar="LENGTH",
-    type=parameters.altitude,
-    default="0m",
-    show_default=True,
-    help="Of the observer above the ground.",
-)
+@parameters.preset_option
+@parameters.sun_option
+@parameters.altitude_option
 @click.option(
     "--directions",
     metavar="FILE.csv|-",

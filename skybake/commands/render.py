@@ -12,22 +12,8 @@ from skybake.commands import parameters, report, request
 
 
 @click.command()
-@click.option(
-    "--preset",
-    default="earth",
-    show_default=True,
-    metavar="NAME|PATH",
-    help="World: a name from 'skybake presets list', or a TOML file of your own.",
-)
-@click.option(
-    "--sun",
-    "sun_elevation",
-    metavar="ANGLE",
-    type=parameters.elevation,
-    default="30deg",
-    show_default=True,
-    help="Geometric elevation of the sun's centre, -90deg to 90deg.",
-)
+@parameters.preset_option
+@parameters.sun_option
 @click.option(
     "--sun-azimuth",
     metavar="ANGLE",
@@ -36,14 +22,7 @@ from skybake.commands import parameters, report, request
     show_default=True,
     help="Compass bearing of the sun: 0deg is north, 90deg east.",
 )
-@click.option(
-    "--altitude",
-    metavar="LENGTH",
-    type=parameters.altitude,
-    default="0m",
-    show_default=True,
-    help="Of the observer above the ground.",
-)
+@parameters.altitude_option
 @click.option(
     "--projection",
     type=click.Choice(parameters.PROJECTIONS),
