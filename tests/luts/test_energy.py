@@ -56,7 +56,7 @@ def radiance_under_even_light(sky, h, mu):
     nu = mu * mu_s + np.sqrt((1.0 - mu**2) * (1.0 - mu_s**2)) * np.cos(azimuth)
     same = np.full(mu_s.shape, r), np.full(mu_s.shape, mu)
     air = sky.atmosphere
-    light = trace_rays(*air, *same, mu_s, nu)
+    light = trace_rays(*air[:4], *same, mu_s, nu)
     scattered = (light.single * eval_phase(air.cut.phase, nu)).sum(axis=1) + light.diffuse
     through = np.zeros(DEPTHS.size)
     if distance_to_entry(r, mu, RADIUS) == math.inf:
