@@ -152,7 +152,8 @@ def trace(medium, shells, max_arc, r, mu, mu_s, nu, samples):
         t_shell, next_layer = _next_shell(
             shells, layer, descending, medium.r_bottom, t_closest, closest_squared
         )
-        t_next = min(t_shell, t + arc, t_last)
+        # Rounding can put a shell that the ray has just crossed behind it.
+        t_next = min(max(t_shell, t), t + arc, t_last)
         if t < dark_first:
             t_next = min(t_next, dark_first)
         elif t < dark_last:
