@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from scipy.special import sph_harm_y
 
 from skybake.luts.field import fast_acos, log_twilight, sun_bins, sun_weights
-from skybake.luts.harmonics import build_harmonics, fill_harmonics
 from skybake.luts.grid import sun_angles
+from skybake.luts.harmonics import build_harmonics, fill_harmonics
 
 ANGLES = sun_angles(math.radians(118.0))
 BINS = sun_bins(ANGLES)
