@@ -147,10 +147,10 @@ def check_place(preset, elevation, altitude):
         assert luminance.max() > 0.0
 
 
-@pytest.mark.parametrize("preset", PRESETS)
 @pytest.mark.parametrize("i", range(len(GRID_ELEVATIONS)))
-def test_every_sun_and_place_gives_light_that_is_finite_and_not_negative(preset, i):
-    check_place(preset, GRID_ELEVATIONS[i], GRID_ALTITUDES[(5 * i) % len(GRID_ALTITUDES)])
+def test_every_sun_and_place_gives_light_that_is_finite_and_not_negative(i):
+    altitude = GRID_ALTITUDES[(5 * i) % len(GRID_ALTITUDES)]
+    check_place(PRESETS[i % len(PRESETS)], GRID_ELEVATIONS[i], altitude)
 
 
 @pytest.mark.slow
@@ -167,7 +167,7 @@ def test_whole_grid_of_suns_and_places_gives_light_that_is_not_negative(
 def test_twilight_darkens_with_every_degree(preset):
     luminance = [
         sky_luminance(scene(preset, elevation), 16)[:8].mean()
-        for elevation in (2.0, 0.0, -2.0, -4.0, -6.0, -8.0, -10.0, -12.0, -15.0, -18.0)
+        for elevation in (2.0, 0.0, -3.0, -6.0, -9.0, -12.0, -18.0)
     ]
     assert (np.diff(luminance) < 0.0).all()
     assert luminance[-1] >= 0.0
