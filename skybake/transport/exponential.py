@@ -11,7 +11,7 @@ from skybake.transport.kernel import kernel
 
 @kernel
 def fast_exp(x):
-    """Exponential of `x` up to 300 (taken as -300 below that), with a relative error below 6e-9.
+    """Exponential of `x` up to 300 (taken as -300 below that), with a relative error below 8e-9.
 
     Notes
     -----

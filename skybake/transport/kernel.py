@@ -18,7 +18,7 @@ from numba.core.runtime.nrt import rtsys
 # Without nnan and ninf: kernels may rely on the meaning of inf and nan.
 FAST_MATH = {"nsz", "arcp", "contract", "afn", "reassoc"}
 
-_KERNEL_PACKAGES = ("transport", "luts", "sky", "projection", "reference")
+_KERNEL_PACKAGES = ("optics", "transport", "luts", "sky", "projection", "reference")
 
 
 def kernel(function: Callable[..., Any]) -> Any:
