@@ -1,5 +1,5 @@
 """``python -m skybake``."""
 
-from skybake.cli import main
+from skybake.cli import run
 
-main()
+run()

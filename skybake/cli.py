@@ -59,10 +59,18 @@ def _fail(message: str, status: int) -> int:
 def _exit_now(status: int) -> NoReturn:
     """Exit without waiting for threads, which may be compiling for seconds."""
     if threading.active_count() > 1:
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(status)
+        _leave(status)
     sys.exit(status)
+
+
+def _leave(status: int) -> NoReturn:
+    """End the process without the interpreter's clean-up."""
+    for stream in sys.stdout, sys.stderr:
+        try:
+            stream.flush()
+        except OSError:
+            status = status or FAILED
+    os._exit(status)
 
 
 def _show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
@@ -92,3 +100,17 @@ main.add_command(render)
 main.add_command(presets)
 main.add_command(preview)
 main.add_command(probe)
+
+
+def run() -> NoReturn:
+    """Run the command line as a process of its own.
+
+    All files are closed by then, and taking numba's modules apart one by one would
+    take 0.2 s, a fifth of a render.
+    """
+    status: Any = 0
+    try:
+        main()
+    except SystemExit as leaving:
+        status = leaving.code
+    _leave(status or 0)

@@ -15,14 +15,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from skybake.luts.closure import close_field
-from skybake.luts.field import DiffuseField, sun_bins
+from skybake.luts.field import DiffuseField, altitude_layers, sun_bins, sun_factors
 from skybake.luts.grid import ORDER
 from skybake.luts.harmonics import build_harmonics
 from skybake.luts.solver import solve_field
 from skybake.luts.transmittance import build_columns
 from skybake.optics.legendre import Truncation, channel_groups, keep_peaks, truncate_peaks
 from skybake.optics.lobes import Lobes, split_phase
-from skybake.optics.medium import Array, Medium
+from skybake.optics.medium import Array, Medium, pad_wavelengths
 from skybake.transport.kernel import cache_directory
 from skybake.transport.shells import altitude_shells
 
@@ -36,7 +36,8 @@ class Atmosphere(NamedTuple):
     Attributes
     ----------
     cut : Truncation
-        The medium without forward peaks, and what restores them.
+        The medium without forward peaks, and what restores them; of wavelengths as
+        `pad_wavelengths` leaves them, as is all of the rest but the lobes.
     shells : ndarray of float64
         Altitudes at which rays are cut into steps. [km]
     columns : ndarray of float64
@@ -69,10 +70,11 @@ def build_atmosphere(medium: Medium, method: str) -> Atmosphere:
     InputError
         If all orders were asked for and the air is optically too thick.
     """
-    cut = truncate_peaks(medium, ORDER) if method == "full" else keep_peaks(medium)
-    columns = build_columns(medium)
+    padded = pad_wavelengths(medium)
+    cut = truncate_peaks(padded, ORDER) if method == "full" else keep_peaks(padded)
+    columns = build_columns(padded)
     solve = solve_field if method == "full" else close_field
-    lobes = split_phase(cut.phase, channel_groups(cut))
+    lobes = split_phase(cut.phase[..., : medium.ground_albedo.size], channel_groups(cut))
     return Atmosphere(cut, altitude_shells(medium), columns, solve(cut, columns), lobes)
 
 
@@ -135,7 +137,7 @@ def _to_arrays(atmosphere: Atmosphere) -> dict[str, Any]:
 def _from_arrays(medium: Medium, arrays: dict[str, Any]) -> Atmosphere:
     cut_arrays = {name: arrays[f"cut_{name}"] for name in Truncation._fields if name != "medium"}
     constituents = medium.scattering.shape[0]
-    scaled = medium._replace(
+    scaled = pad_wavelengths(medium)._replace(
         scattering=arrays["scaled_scattering"],
         extinction=arrays["scaled_extinction"],
         phase=cut_arrays["phase"][:constituents],
@@ -143,8 +145,10 @@ def _from_arrays(medium: Medium, arrays: dict[str, Any]) -> Atmosphere:
     field = DiffuseField(
         harmonics=build_harmonics(int(arrays["order"])),
         altitude=arrays["altitude"],
+        layer=altitude_layers(scaled, arrays["altitude"]),
         sun_angle=arrays["sun_angle"],
         sun_bin=sun_bins(arrays["sun_angle"]),
+        sun_factor=sun_factors(arrays["sun_angle"]),
         source=arrays["source"],
         radiance=arrays["radiance"],
         ground=arrays["ground"],

@@ -3,20 +3,27 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
-from skybake.luts.field import DiffuseField, sun_bins
+from skybake.luts.field import DiffuseField, altitude_layers, sun_bins, sun_factors
 from skybake.luts.harmonics import build_harmonics, fill_harmonics
 from skybake.optics.legendre import Truncation
-from skybake.optics.medium import Array
+from skybake.optics.medium import Array, altitude_nodes
 from skybake.transport.shells import altitude_shells
 
 ORDER = 10
 """Highest harmonic of the diffuse field; forward peaks beyond it are truncated."""
 
 ALTITUDES = 24
+THIN_DEPTH = 2.0
+ALTITUDES_PER_DEPTH = 4.0
+MAX_ALTITUDES = 96
+"""Nodes of altitude, more of them where the air is thick: light between two nodes that lie an
+optical depth apart is lost to interpolation, 6 % of it at depth 10 with no more than 24."""
+
 UPWARD = 10
 DOWNWARD = 5
 
@@ -52,7 +59,8 @@ class Grid(NamedTuple):
 def build_grid(cut: Truncation) -> Grid:
     """Choose the solver's nodes for an atmosphere."""
     medium = cut.medium
-    altitude = altitude_shells(medium, ALTITUDES)
+    more = round(ALTITUDES_PER_DEPTH * max(vertical_depth(cut) - THIN_DEPTH, 0.0))
+    altitude = altitude_shells(medium, min(ALTITUDES + more, MAX_ALTITUDES))
     mu, weight = zip(
         *(_split_directions(medium.r_bottom, h, UPWARD, DOWNWARD) for h in altitude), strict=True
     )
@@ -62,8 +70,21 @@ def build_grid(cut: Truncation) -> Grid:
         sun_angle=sun_angles(min(math.pi, math.pi / 2.0 + max(2.5 * dip, math.radians(28.0)))),
         mu=np.stack(mu),
         weight=np.stack(weight),
-        azimuth=math.pi * (np.arange(ORDER + 1) + 0.5) / (ORDER + 1),
+        azimuth=azimuths(ORDER),
     )
+
+
+def vertical_depth(cut: Truncation) -> float:
+    """Largest vertical optical depth over wavelength, forward peaks left out."""
+    medium = cut.medium
+    altitude = altitude_nodes(medium.r_bottom, medium.r_top)
+    columns = np.asarray(np.trapezoid(medium.density, altitude, axis=0))
+    return float((columns @ medium.extinction).max())
+
+
+def azimuths(order: int) -> Array:
+    """Midpoints of half the circle that tell cosines up to an order apart. [rad]"""
+    return math.pi * (np.arange(order + 1) + 0.5) / (order + 1)
 
 
 def sun_angles(last: float) -> Array:
@@ -94,8 +115,10 @@ def empty_field(cut: Truncation, altitude: Array, sun_angle: Array, order: int) 
     return DiffuseField(
         harmonics=harmonics,
         altitude=altitude,
+        layer=altitude_layers(cut.medium, altitude),
         sun_angle=sun_angle,
         sun_bin=sun_bins(sun_angle),
+        sun_factor=sun_factors(sun_angle),
         source=np.ascontiguousarray(cut.medium.scattering[:, None] * cut.moments[:, : order + 1]),
         radiance=np.zeros(
             (altitude.size, sun_angle.size, harmonics.degree.size, wavelengths), np.float32
@@ -104,7 +127,9 @@ def empty_field(cut: Truncation, altitude: Array, sun_angle: Array, order: int) 
     )
 
 
-def project(grid: Grid, i: int, radiance: Array, field: DiffuseField) -> None:
+def project(
+    grid: Grid, i: int, radiance: npt.NDArray[np.floating[Any]], field: DiffuseField
+) -> None:
     """Write the moments of the radiance at one altitude of a field, and its ground's irradiance.
 
     Parameters

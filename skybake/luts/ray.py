@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
-from skybake.luts.field import (
-    DiffuseField,
-    add_diffuse,
-    allocate_scratch,
-    fill_ground_irradiance,
-)
-from skybake.luts.single import add_ground, add_single_scattering
+from skybake.luts.field import DiffuseField
+from skybake.luts.multiple import add_diffuse, group_rays
+from skybake.luts.single import add_single_scattering, add_sunlit_ground
 from skybake.optics.legendre import PEAK_NODES, Truncation
 from skybake.optics.medium import Array
-from skybake.transport.geometry import shadow_interval
-from skybake.transport.kernel import kernel, run_rows
-from skybake.transport.trace import MAX_ARC, allocate_samples, ray_limits, trace
+from skybake.transport.kernel import run_rows
+from skybake.transport.samples import allocate_samples
+from skybake.transport.trace import MAX_ARC, trace
 
 
 class RayLight(NamedTuple):
@@ -28,12 +25,12 @@ class RayLight(NamedTuple):
     single : ndarray of float64, shape (ray, channel, wavelength)
         Sunlight scattered once toward the observer, before the phase functions of
         the channels are applied.
-    diffuse : ndarray of float64, shape (ray, wavelength)
+    diffuse : ndarray of float32, shape (ray, wavelength)
         The rest: scattered twice or more, and from the ground. [sr⁻¹]
     """
 
     single: Array
-    diffuse: Array
+    diffuse: npt.NDArray[np.floating[Any]]
 
 
 def trace_rays(
@@ -70,73 +67,34 @@ def trace_rays(
 
     Notes
     -----
-    Neighbours with the same r and mu share their samples as long as neither
-    meets the planet's shadow, so rays are best ordered by direction first.
+    Neighbours with the same r and mu share samples, so rays are best ordered by
+    direction first. Of sunlight that is scattered once they do so only where
+    neither meets the planet's shadow.
     """
     channels, wavelengths = cut.phase.shape[0], cut.phase.shape[2]
-    light = RayLight(np.zeros((r.size, channels, wavelengths)), np.zeros((r.size, wavelengths)))
+    single = np.zeros((r.size, channels, wavelengths))
+    diffuse = np.zeros((r.size, wavelengths), np.float32)
     rays = np.stack([r, mu, mu_s, nu], axis=1)
 
-    def work(first: int, last: int) -> None:
-        samples, scratch = allocate_samples(cut.medium), allocate_scratch(field)
-        _trace_rays(
-            cut,
-            PEAK_NODES,
-            shells,
-            max_arc,
-            columns,
-            field,
-            rays,
-            samples,
-            scratch,
-            first,
-            last,
-            *light,
-        )
+    def scatter_once(begin: int, end: int) -> None:
+        samples = allocate_samples(cut.medium)
+        while begin < end:
+            stop = trace(cut.medium, shells, max_arc, rays, begin, end, samples)
+            batch = rays, begin, stop, samples
+            add_single_scattering(cut, PEAK_NODES, columns, *batch, single)
+            add_sunlit_ground(cut.medium, columns, *batch, diffuse)
+            begin = stop
 
-    run_rows(r.size, work, chunk=max(64, r.size // 64))
-    return light
+    def scatter_field(begin: int, end: int) -> None:
+        samples = allocate_samples(cut.medium)
+        while begin < end:
+            stop = trace(cut.medium, shells, max_arc, fans.axes, begin, end, samples)
+            add_diffuse(field, cut.medium, fans, begin, stop, samples, diffuse)
+            begin = stop
 
-
-@kernel
-def _trace_rays(
-    cut,
-    nodes,
-    shells,
-    max_arc,
-    columns,
-    field,
-    rays,
-    samples,
-    scratch,
-    first,
-    last,
-    single,
-    diffuse,
-):
-    medium = cut.medium
-    sky = np.empty(diffuse.shape[1])
-    spectra = np.empty((3, diffuse.shape[1]))
-    shared_r = shared_mu = -2.0
-    count = 0
-    length = 0.0
-    hits_ground = False
-    for i in range(first, last):
-        r, mu, mu_s, nu = rays[i, 0], rays[i, 1], rays[i, 2], rays[i, 3]
-        t_first, t_last, _ = ray_limits(medium, r, mu)
-        dark_first, _ = shadow_interval(r, mu, mu_s, nu, medium.r_bottom, t_first, t_last)
-        is_lit = dark_first > t_last
-        if not (is_lit and r == shared_r and mu == shared_mu):
-            count, length, hits_ground = trace(medium, shells, max_arc, r, mu, mu_s, nu, samples)
-            shared_r = r if is_lit else -2.0
-            shared_mu = mu
-        add_single_scattering(cut, columns, nodes, r, mu_s, nu, samples, count, spectra, single[i])
-        # A field on less than two altitudes is none.
-        if field.altitude.size > 1:
-            add_diffuse(
-                field, medium.r_bottom, r, mu, mu_s, nu, samples, count, scratch, diffuse[i]
-            )
-        if hits_ground:
-            mu_s_ground = (r * mu_s + length * nu) / medium.r_bottom
-            fill_ground_irradiance(field, mu_s_ground, scratch.weights, sky)
-            add_ground(medium, columns, sky, r, mu_s, nu, length, samples, diffuse[i])
+    run_rows(r.size, scatter_once, chunk=max(64, r.size // 64))
+    # A field on less than two altitudes is none.
+    if field.altitude.size > 1:
+        fans = group_rays(rays)
+        run_rows(len(fans.axes), scatter_field, chunk=max(1, len(fans.axes) // 32))
+    return RayLight(single, diffuse)

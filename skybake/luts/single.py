@@ -4,63 +4,60 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from skybake.luts.transmittance import fill_sun_column, fill_transmittance
 from skybake.transport.exponential import fast_exp
-from skybake.transport.kernel import kernel
+from skybake.transport.kernel import inner_kernel, kernel
 
 
 @kernel
-def add_single_scattering(cut, columns, nodes, r, mu_s, nu, samples, count, scratch, out):
-    """Add the sunlight that reaches a ray's samples, before any phase function.
+def add_single_scattering(cut, nodes, columns, rays, begin, end, samples, out):
+    """Add the sunlight that reaches the samples of rays, before any phase function.
 
     Parameters
     ----------
     cut : Truncation
         The atmosphere without forward peaks, and what restores them.
-    columns : ndarray
-        Table of `build_columns`.
     nodes : ndarray of float64
         `PEAK_NODES`.
-    r, mu_s, nu : float
-        Start of the ray [km], cosines of the sun's zenith angle there and of
-        the angle between ray and sun.
-    samples, count : Samples, int
-        Result of `trace` in the truncated medium.
-    scratch : ndarray of float64, shape (3, wavelength)
-        Work space.
-    out : ndarray of float64, shape (channel, wavelength)
+    columns : ndarray
+        Table of `build_columns`.
+    rays, begin, end, samples
+        Arguments and result of `trace`, in the truncated medium; `end` is the ray
+        after the last that was traced.
+    out : ndarray of float64, shape (ray, channel, wavelength)
         Receives, per unit irradiance, what the phase functions of the channels
         multiply; see `skybake.optics.legendre.Truncation`.
     """
     medium = cut.medium
     constituents, wavelengths = medium.extinction.shape
-    column = samples.sun_column
-    light, peak, filled = scratch[0], scratch[1], scratch[2]
-    for n in range(count):
-        if not samples.lit[n]:
-            continue
-        mu_s_here = (r * mu_s + samples.distance[n] * nu) / samples.radius[n]
-        if not fill_sun_column(
-            columns, medium.r_bottom, medium.r_top, samples.radius[n], mu_s_here, column
-        ):
-            continue
-        for k in range(wavelengths):
-            light[k] = 0.0
-        for c in range(constituents):
+    column = np.empty(constituents)
+    light, peak, filled = np.empty(wavelengths), np.empty(wavelengths), np.empty(wavelengths)
+    for i in range(begin, end):
+        r, mu_s, nu = rays[i, 0], rays[i, 2], rays[i, 3]
+        first = samples.first[i - begin]
+        for n in range(first, first + samples.number[i - begin]):
+            if not samples.lit[n]:
+                continue
+            mu_s_here = (r * mu_s + samples.distance[n] * nu) / samples.radius[n]
+            if not fill_sun_column(
+                columns, medium.r_bottom, medium.r_top, samples.radius[n], mu_s_here, column
+            ):
+                continue
+            fill_transmittance(medium.extinction, column, light)
             for k in range(wavelengths):
-                light[k] -= medium.extinction[c, k] * column[c]
-        for k in range(wavelengths):
-            light[k] = fast_exp(light[k]) * samples.weight[n, k]
-        for c in range(constituents):
-            density = samples.density[n, c]
-            for k in range(wavelengths):
-                out[c, k] += density * medium.scattering[c, k] * light[k]
-        if cut.peaked.size > 0:
-            _split_peak(cut, column, samples, n, light, peak, filled)
-            _add_peak(cut, nodes, samples, n, peak, filled, out)
+                light[k] *= samples.weight[n, k]
+            for c in range(constituents):
+                density = samples.density[n, c]
+                for k in range(wavelengths):
+                    out[i, c, k] += density * medium.scattering[c, k] * light[k]
+            if cut.peaked.size > 0:
+                _split_peak(cut, column, samples, n, light, peak, filled)
+                _add_peak(cut, nodes, samples, n, peak, filled, out[i])
 
 
-@kernel
+@inner_kernel
 def _split_peak(cut, column, samples, n, light, peak, filled):
     """Light that was scattered within peaks only, and how far they have filled, 1 - exp(-f y)."""
     for k in range(light.size):
@@ -77,7 +74,7 @@ def _split_peak(cut, column, samples, n, light, peak, filled):
         filled[k] = 1.0 - fast_exp(-depth)
 
 
-@kernel
+@inner_kernel
 def _add_peak(cut, nodes, samples, n, peak, filled, out):
     """Share the peak's light among the channels of the two nodes around `filled`."""
     constituents = cut.fraction.shape[0]
@@ -100,30 +97,26 @@ def _add_peak(cut, nodes, samples, n, peak, filled, out):
 
 
 @kernel
-def add_ground(medium, columns, diffuse, r, mu_s, nu, length, samples, out):
-    """Add the ground at the end of a ray, lit by the sun and by the sky.
+def add_sunlit_ground(medium, columns, rays, begin, end, samples, out):
+    """Add the ground at the end of rays as the sun alone lights it.
 
     Parameters
     ----------
     medium, columns : Medium, ndarray
         The atmosphere and its table of `build_columns`.
-    diffuse : ndarray of float64, shape (wavelength,)
-        Irradiance of the ground by the sky where the ray ends, per unit
-        irradiance of the sun.
-    r, mu_s, nu, length : float
-        Start of the ray [km], cosines of the sun's zenith angle there and of
-        the angle between ray and sun, distance to the ground [km].
-    samples : Samples
-        Result of `trace`.
-    out : ndarray of float64, shape (wavelength,)
+    rays, begin, end, samples
+        Arguments and result of `trace`.
+    out : ndarray of float32, shape (ray, wavelength)
         Receives the radiance per unit irradiance. [sr⁻¹]
     """
-    mu_s_ground = (r * mu_s + length * nu) / medium.r_bottom
-    column, direct = samples.sun_column, samples.light
-    fill_sun_column(
-        columns, medium.r_bottom, medium.r_top, medium.r_bottom, max(mu_s_ground, 0.0), column
-    )
-    fill_transmittance(medium.extinction, column, direct)
-    for k in range(out.size):
-        irradiance = direct[k] * max(mu_s_ground, 0.0) + diffuse[k]
-        out[k] += samples.transmittance[k] * medium.ground_albedo[k] / math.pi * irradiance
+    column, light = np.empty(medium.extinction.shape[0]), np.empty(out.shape[1])
+    for i in range(begin, end):
+        ray = i - begin
+        mu_s = (rays[i, 0] * rays[i, 2] + samples.length[ray] * rays[i, 3]) / medium.r_bottom
+        if not samples.hits_ground[ray] or mu_s <= 0.0:
+            continue
+        fill_sun_column(columns, medium.r_bottom, medium.r_top, medium.r_bottom, mu_s, column)
+        fill_transmittance(medium.extinction, column, light)
+        for k in range(light.size):
+            reflected = medium.ground_albedo[k] / math.pi * mu_s * light[k]
+            out[i, k] += samples.transmittance[ray, k] * reflected

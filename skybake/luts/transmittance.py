@@ -16,19 +16,19 @@ from skybake.optics.medium import Medium
 from skybake.transport.density import fill_column
 from skybake.transport.exponential import fast_exp
 from skybake.transport.geometry import distance_to_exit
-from skybake.transport.kernel import kernel, run_rows
+from skybake.transport.kernel import inner_kernel, kernel, run_rows
 
 SHAPE = (256, 256)
 BUILD_STEPS = 48
 
 
-@kernel
+@inner_kernel
 def altitude_mu_from_unit(r_bottom, r_top, x_altitude, x_mu):
     """Altitude [km] and cosine of the zenith angle of a place in the table's unit square."""
     return x_altitude * x_altitude * (r_top - r_bottom), x_mu * x_mu
 
 
-@kernel
+@inner_kernel
 def unit_from_altitude_mu(r_bottom, r_top, h, mu):
     """Inverse of `altitude_mu_from_unit`, for upward directions (mu >= 0)."""
     return math.sqrt(min(max(h / (r_top - r_bottom), 0.0), 1.0)), math.sqrt(min(max(mu, 0.0), 1.0))
@@ -72,7 +72,7 @@ def build_columns(
     return out
 
 
-@kernel
+@inner_kernel
 def _add_upward(columns, r_bottom, r_top, h, mu, factor, out):
     """Add `factor` times the interpolated column toward an upward direction to `out`."""
     x_altitude, x_mu = unit_from_altitude_mu(r_bottom, r_top, h, mu)
@@ -88,7 +88,7 @@ def _add_upward(columns, r_bottom, r_top, h, mu, factor, out):
         out[c] += factor * (low + u * (high - low))
 
 
-@kernel
+@inner_kernel
 def fill_sun_column(columns, r_bottom, r_top, r, mu_s, out):
     """Write the columns from a point toward the sun to `out`.
 
@@ -128,7 +128,7 @@ def fill_sun_column(columns, r_bottom, r_top, r, mu_s, out):
     return True
 
 
-@kernel
+@inner_kernel
 def fill_transmittance(extinction, column, out):
     """Write exp(-optical depth) of a column to `out`, shape (wavelength,)."""
     for k in range(out.size):

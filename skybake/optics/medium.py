@@ -19,6 +19,9 @@ Array = npt.NDArray[np.float64]
 ALTITUDE_NODES = 1024
 """Nodes of `Medium.density`; linear interpolation of exp(-h/1.2 km) is then good to 3e-5."""
 
+LANES = 16
+"""Kernels take wavelengths in multiples: loops of known length become plain vector code."""
+
 
 class Medium(NamedTuple):
     """An atmosphere over a Lambertian sphere, sampled at fixed wavelengths.
@@ -104,6 +107,18 @@ def build_medium(planet: Planet, wavelengths: Array, bandwidth: float = BANDWIDT
         extinction=np.stack(scattering) + np.stack(absorption),
         phase=np.stack(phase),
         ground_albedo=eval_spectrum(planet.ground.albedo, wavelengths),
+    )
+
+
+def pad_wavelengths(medium: Medium) -> Medium:
+    """Repeat the last wavelength until their number is a multiple of `LANES`."""
+    last = medium.ground_albedo.size - 1
+    index = np.minimum(np.arange(-(-(last + 1) // LANES) * LANES), last)
+    return medium._replace(
+        scattering=medium.scattering[:, index],
+        extinction=medium.extinction[:, index],
+        phase=np.ascontiguousarray(medium.phase[:, :, index]),
+        ground_albedo=medium.ground_albedo[index],
     )
 
 

@@ -200,7 +200,9 @@ class Sky:
         nu = np.clip(nu, -1.0, 1.0)
         if self.method == "march":
             return RayLight(*march_rays(self.medium, r, mu, mu_s, nu))
-        return trace_rays(*self.atmosphere[:4], r, mu, mu_s, nu)
+        light = trace_rays(*self.atmosphere[:4], r, mu, mu_s, nu)
+        count = self.medium.ground_albedo.size
+        return RayLight(light.single[..., :count], light.diffuse[..., :count])
 
     @property
     def is_solved(self) -> bool:
@@ -220,7 +222,9 @@ class Sky:
     @property
     def _phase(self) -> Array:
         """Phase functions of the channels of `_light`, (channel, angle, wavelength)."""
-        return self.medium.phase if self.method == "march" else self.atmosphere.cut.phase
+        if self.method == "march":
+            return self.medium.phase
+        return self.atmosphere.cut.phase[..., : self.medium.ground_albedo.size]
 
     @property
     def _lobes(self) -> Lobes:

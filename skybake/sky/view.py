@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.optics.medium import Array
-from skybake.transport.kernel import kernel
+from skybake.transport.kernel import inner_kernel, kernel
 
 Table = npt.NDArray[np.float32]
 
@@ -75,7 +75,7 @@ def table_directions(
     return np.stack([above, below]), np.linspace(0.0, math.pi, azimuths)
 
 
-@kernel
+@inner_kernel
 def _cubic(x, size, out):
     """Catmull-Rom weights of four nodes around `x`; returns the first, which may be -1."""
     i = min(max(int(x), 0), size - 2)
@@ -87,7 +87,7 @@ def _cubic(x, size, out):
     return i - 1
 
 
-@kernel
+@inner_kernel
 def _latitude_weights(view, side, zenith, out):
     """Weights of four latitudes; at a table's edge the missing node is extrapolated."""
     size = view.table.shape[1]
@@ -111,7 +111,7 @@ def _latitude_weights(view, side, zenith, out):
     return i
 
 
-@kernel
+@inner_kernel
 def _fill_latitude(view, side, zenith, j_first, j_last, weights, out):
     """Interpolate the table at one zenith angle into rows of `out`, (azimuth + 2, channel).
 
@@ -134,7 +134,7 @@ def _fill_latitude(view, side, zenith, j_first, j_last, weights, out):
             )
 
 
-@kernel
+@inner_kernel
 def _fill_curves(view, half_sine_squared, out):
     """Interpolate the lobes at the angle whose half has this squared sine, shape (lobe,)."""
     last = view.curves.shape[0] - 1
@@ -148,7 +148,7 @@ def _fill_curves(view, half_sine_squared, out):
         out[q] = view.curves[i, q] + u * (view.curves[i + 1, q] - view.curves[i, q])
 
 
-@kernel
+@inner_kernel
 def _add_pixel(latitude, j, weights, share, curves, out):
     """Add `share` of the radiance at azimuth rows j..j+3 to `out`, shape (3,)."""
     a, b = np.float32(share * weights[0]), np.float32(share * weights[1])
@@ -229,7 +229,7 @@ def fill_directions(view, zenith, azimuth, height, first, last, out):
                 _add_pixel(latitude[1], row, weights, below, curves, pixel)
 
 
-@kernel
+@inner_kernel
 def _split_pixel(view, theta, height):
     """Shares of a pixel above and below the horizon, and the zenith angle of each's middle."""
     low, high = theta - 0.5 * height, theta + 0.5 * height

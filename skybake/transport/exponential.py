@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from skybake.transport.kernel import kernel
+from skybake.transport.kernel import inner_kernel
 
 
-@kernel
+@inner_kernel
 def fast_exp(x):
     """Exponential of `x` up to 300 (taken as -300 below that), with a relative error below 8e-9.
 

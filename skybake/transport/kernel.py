@@ -29,7 +29,21 @@ def kernel(function: Callable[..., Any]) -> Any:
     and saves milliseconds a call, and the result has the same bits for any
     number of threads.
     """
+    return _compile_later(function)
+
+
+def inner_kernel(function: Callable[..., Any]) -> Any:
+    """Compile `function` for other kernels only: Python cannot call it.
+
+    What would unpack its arguments from Python's objects costs more time to compile
+    than many a kernel itself. Nor is memory counted in it: it must not make arrays.
+    """
+    return _compile_later(function, no_cpython_wrapper=True, _nrt=False)
+
+
+def _compile_later(function: Callable[..., Any], **extra: bool) -> Any:
     options: dict[str, Any] = {"nogil": True, "fastmath": FAST_MATH, "error_model": "numpy"}
+    options |= {"no_cfunc_wrapper": True, **extra}
     directory = cache_directory()
     if directory is None:
         return numba.njit(**options)(function)

@@ -9,7 +9,7 @@ import numpy as np
 from skybake.optics.medium import Array, Medium
 from skybake.transport.density import fill_density
 from skybake.transport.geometry import distance_to_entry, distance_to_exit, radius_at
-from skybake.transport.kernel import kernel, run_rows
+from skybake.transport.kernel import inner_kernel, kernel, run_rows
 from skybake.transport.trace import ray_limits
 
 VIEW_STEPS = 256
@@ -36,7 +36,8 @@ def march_rays(
         Starts [km], cosines of the zenith angles of rays and sun there, and of the
         angles between rays and sun.
     view_steps, light_steps : int, optional
-        Steps along the rays and toward the sun; midpoints, quadratic in distance.
+        Steps along the rays and toward the sun; midpoints, quadratic in
+        the distance from the lowest point.
 
     Returns
     -------
@@ -60,10 +61,9 @@ def march_rays(
     return single, ground
 
 
-@kernel
-def _add_depth(medium, r, mu, length, steps, depth):
-    """Add the optical depth along a ray to `depth`, by midpoints."""
-    density = np.empty(medium.density.shape[1])
+@inner_kernel
+def _add_depth(medium, r, mu, length, steps, density, depth):
+    """Add the optical depth along a ray to `depth`, by midpoints; `density` is scratch."""
     for i in range(steps):
         low, high = length * (i / steps) ** 2, length * ((i + 1) / steps) ** 2
         h = radius_at(r, mu, 0.5 * (low + high)) - medium.r_bottom
@@ -73,19 +73,28 @@ def _add_depth(medium, r, mu, length, steps, depth):
                 depth[k] += (high - low) * density[c] * medium.extinction[c, k]
 
 
+@inner_kernel
+def _edge(begin, lowest, end, share):
+    """Distance after a share of the steps, which crowd quadratically at the lowest point."""
+    before, after = math.sqrt(lowest - begin), math.sqrt(end - lowest)
+    x = share * (before + after) - before
+    return lowest + x * abs(x)
+
+
 @kernel
 def _march(medium, rays, view_steps, light_steps, first, last, single, ground):
     constituents, wavelengths = medium.extinction.shape
-    density = np.empty(constituents)
+    density, scratch = np.empty(constituents), np.empty(constituents)
     along = np.empty(wavelengths)
     total = np.empty(wavelengths)
     for ray in range(first, last):
         r, mu, mu_s, nu = rays[ray, 0], rays[ray, 1], rays[ray, 2], rays[ray, 3]
         begin, end, hits_ground = ray_limits(medium, r, mu)
+        lowest = min(max(-r * mu, begin), end)
         along[:] = 0.0
         for i in range(view_steps):
-            low = begin + (end - begin) * (i / view_steps) ** 2
-            high = begin + (end - begin) * ((i + 1) / view_steps) ** 2
+            low = _edge(begin, lowest, end, i / view_steps)
+            high = _edge(begin, lowest, end, (i + 1) / view_steps)
             t = 0.5 * (low + high)
             here = radius_at(r, mu, t)
             fill_density(
@@ -101,7 +110,7 @@ def _march(medium, rays, view_steps, light_steps, first, last, single, ground):
             if distance_to_entry(here, mu_s_here, medium.r_bottom) < math.inf:
                 continue
             to_top = distance_to_exit(here, mu_s_here, medium.r_top)
-            _add_depth(medium, here, mu_s_here, to_top, light_steps, total)
+            _add_depth(medium, here, mu_s_here, to_top, light_steps, scratch, total)
             for c in range(constituents):
                 for k in range(wavelengths):
                     source = density[c] * medium.scattering[c, k]
@@ -110,7 +119,7 @@ def _march(medium, rays, view_steps, light_steps, first, last, single, ground):
         if hits_ground and mu_s_ground > 0.0:
             total[:] = along
             to_top = distance_to_exit(medium.r_bottom, mu_s_ground, medium.r_top)
-            _add_depth(medium, medium.r_bottom, mu_s_ground, to_top, light_steps, total)
+            _add_depth(medium, medium.r_bottom, mu_s_ground, to_top, light_steps, scratch, total)
             for k in range(wavelengths):
                 reflected = medium.ground_albedo[k] / math.pi * mu_s_ground
                 ground[ray, k] = reflected * math.exp(-total[k])

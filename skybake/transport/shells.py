@@ -6,8 +6,8 @@ import numpy as np
 
 from skybake.optics.medium import Array, Medium, altitude_nodes
 
-SHELL_COUNT = 33
-"""Shells of a ray that is looked along; 32 layers keep single scattering within 0.05 %."""
+SHELL_COUNT = 49
+"""Shells of a ray that is looked along; 48 layers keep single scattering within 0.05 %."""
 
 
 def altitude_shells(medium: Medium, count: int = SHELL_COUNT) -> Array:

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-from skybake.optics.medium import Array, Medium
 from skybake.transport.density import GAUSS_FAR, GAUSS_LOW, GAUSS_NEAR, GAUSS_SELF, fill_density
 from skybake.transport.exponential import fast_exp
 from skybake.transport.geometry import (
@@ -18,68 +15,15 @@ from skybake.transport.geometry import (
     shadow_interval,
     squared_closest_approach,
 )
-from skybake.transport.kernel import kernel
+from skybake.transport.kernel import inner_kernel, kernel
+from skybake.transport.samples import MAX_SAMPLES
 
-MAX_SAMPLES = 4096
-MAX_ARC = math.radians(0.6)
+MAX_ARC = math.radians(0.5)
 MAX_STEP_OPTICAL_DEPTH = 1.0
 OPAQUE = 1e-9
 
 
-class Samples(NamedTuple):
-    """Work space of one ray: what is known of it before the sun's light is added.
-
-    Attributes
-    ----------
-    distance, radius : ndarray of float64, shape (MAX_SAMPLES,)
-        Distance from the observer and from the planet's centre. [km]
-    lit : ndarray of bool, shape (MAX_SAMPLES,)
-        Whether the point is outside the planet's shadow.
-    density : ndarray of float64, shape (MAX_SAMPLES, constituent)
-        Relative densities.
-    column_to : ndarray of float64, shape (MAX_SAMPLES, constituent)
-        Columns from the observer. [km]
-    weight : ndarray of float64, shape (MAX_SAMPLES, wavelength)
-        Transmittance to the observer times the length that the sample stands
-        for; a sum of weight * source is the integral along the ray. [km]
-    transmittance : ndarray of float64, shape (wavelength,)
-        Transmittance of the whole ray.
-    column : ndarray of float64, shape (constituent,)
-        Columns of the whole ray. [km]
-    sun_column, light : ndarray of float64, shapes (constituent,) and (wavelength,)
-        Scratch of whoever adds light to the samples.
-    """
-
-    distance: Array
-    radius: Array
-    lit: npt.NDArray[np.bool_]
-    density: Array
-    column_to: Array
-    weight: Array
-    transmittance: Array
-    column: Array
-    sun_column: Array
-    light: Array
-
-
-def allocate_samples(medium: Medium) -> Samples:
-    """Make the work space for rays through `medium`; each thread needs its own."""
-    constituents, wavelengths = medium.extinction.shape
-    return Samples(
-        distance=np.empty(MAX_SAMPLES),
-        radius=np.empty(MAX_SAMPLES),
-        lit=np.empty(MAX_SAMPLES, np.bool_),
-        density=np.empty((MAX_SAMPLES, constituents)),
-        column_to=np.empty((MAX_SAMPLES, constituents)),
-        weight=np.empty((MAX_SAMPLES, wavelengths)),
-        transmittance=np.empty(wavelengths),
-        column=np.empty(constituents),
-        sun_column=np.empty(constituents),
-        light=np.empty(wavelengths),
-    )
-
-
-@kernel
+@inner_kernel
 def ray_limits(medium, r, mu):
     """Where a ray enters and leaves the air, and whether it ends on the ground.
 
@@ -101,8 +45,8 @@ def ray_limits(medium, r, mu):
 
 
 @kernel
-def trace(medium, shells, max_arc, r, mu, mu_s, nu, samples):
-    """Fill `samples` along a ray and find where it ends.
+def trace(medium, shells, max_arc, rays, begin, end, samples):
+    """Fill `samples` along as many rays as it holds.
 
     Parameters
     ----------
@@ -112,19 +56,19 @@ def trace(medium, shells, max_arc, r, mu, mu_s, nu, samples):
         Altitudes at which steps end, ascending from the ground to the top. [km]
     max_arc : float
         Largest angle, seen from the planet's centre, that a step may cover. [rad]
-    r, mu : float
-        Start of the ray, inside the air or outside, and cosine of its zenith
-        angle. [km]
-    mu_s, nu : float
-        Cosines of the sun's zenith angle at the start and of the angle between
-        ray and sun; they only decide where the planet's shadow lies.
+    rays : ndarray of float64, shape (ray, 4)
+        Start of each ray, inside the air or outside [km], cosines of its zenith
+        angle and of the sun's there, and of the angle between ray and sun. Those of
+        the sun only decide where the planet's shadow lies.
+    begin, end : int
+        Rays to be traced.
     samples : Samples
         Work space that receives the result.
 
     Returns
     -------
-    (int, float, bool)
-        Number of samples, length of the ray [km], whether it ends on the ground.
+    int
+        The first ray that is left for the next batch, or `end`.
 
     Notes
     -----
@@ -134,20 +78,62 @@ def trace(medium, shells, max_arc, r, mu, mu_s, nu, samples):
     to fourth order and neither kinks of the profile nor the shadow's edge falls
     inside a step.
     """
-    t, t_last, hits_ground = ray_limits(medium, r, mu)
-    constituents, wavelengths = medium.extinction.shape
-    for k in range(wavelengths):
-        samples.transmittance[k] = 1.0
-    for c in range(constituents):
-        samples.column[c] = 0.0
-    dark_first, dark_last = shadow_interval(r, mu, mu_s, nu, medium.r_bottom, t, t_last)
+    capacity = samples.distance.size
+    used = np.int64(0)
+    is_shared = False
+    i = begin
+    while i < end and i - begin < samples.first.size and used + MAX_SAMPLES <= capacity:
+        r, mu, mu_s, nu = rays[i, 0], rays[i, 1], rays[i, 2], rays[i, 3]
+        t_first, t_last, hits_ground = ray_limits(medium, r, mu)
+        dark_first, dark_last = shadow_interval(r, mu, mu_s, nu, medium.r_bottom, t_first, t_last)
+        is_lit = dark_first > t_last
+        ray = i - begin
+        is_same = is_shared and is_lit and rays[i - 1, 0] == r and rays[i - 1, 1] == mu
+        samples.length[ray] = t_last
+        samples.hits_ground[ray] = hits_ground
+        if is_same:
+            samples.first[ray] = samples.first[ray - 1]
+            samples.number[ray] = samples.number[ray - 1]
+            for k in range(samples.transmittance.shape[1]):
+                samples.transmittance[ray, k] = samples.transmittance[ray - 1, k]
+        else:
+            samples.first[ray] = used
+            used = _trace_ray(
+                medium,
+                shells,
+                max_arc,
+                r,
+                mu,
+                t_first,
+                t_last,
+                dark_first,
+                dark_last,
+                used,
+                ray,
+                samples,
+            )
+            samples.number[ray] = used - samples.first[ray]
+        is_shared = is_lit
+        i += 1
+    return i
+
+
+@inner_kernel
+def _trace_ray(
+    medium, shells, max_arc, r, mu, t, t_last, dark_first, dark_last, first, ray, samples
+):
+    """Append the samples of one ray from `first` on; returns the next free one."""
+    transmittance, column = samples.transmittance[ray], samples.column[ray]
+    for k in range(transmittance.size):
+        transmittance[k] = 1.0
+    for c in range(column.size):
+        column[c] = 0.0
     t_closest = -r * mu
     closest_squared = squared_closest_approach(r, mu)
     layer = _layer_at(shells, radius_at(r, mu, t) - medium.r_bottom, t < t_closest)
     arc = max_arc * medium.r_bottom
-    # A plain 0 would have numba compile `_add_step` for that literal, and once more.
-    n = np.int64(0)
-    while t < t_last and n + 2 <= MAX_SAMPLES:
+    n = first
+    while t < t_last and n + 2 <= first + MAX_SAMPLES:
         descending = t < t_closest
         t_shell, next_layer = _next_shell(
             shells, layer, descending, medium.r_bottom, t_closest, closest_squared
@@ -158,22 +144,20 @@ def trace(medium, shells, max_arc, r, mu, mu_s, nu, samples):
             t_next = min(t_next, dark_first)
         elif t < dark_last:
             t_next = min(t_next, dark_last)
-        if n + 2 < MAX_SAMPLES // 2:
-            t_next = _limit_depth(
-                medium, r, mu, t, t_next, samples.transmittance, samples.density[n]
-            )
+        if n + 2 < first + MAX_SAMPLES // 2:
+            t_next = _limit_depth(medium, r, mu, t, t_next, transmittance, samples.density[n])
         lit = t_next <= dark_first or t >= dark_last
-        brightest = _add_step(medium, r, mu, t, t_next - t, lit, n, samples)
+        brightest = _add_step(medium, r, mu, t, t_next - t, lit, n, samples, transmittance, column)
         n += 2
         if t_next >= t_shell:
             layer = next_layer
         t = t_next
         if brightest < OPAQUE:
             break
-    return n, t_last, hits_ground
+    return n
 
 
-@kernel
+@inner_kernel
 def _layer_at(shells, h, descending):
     """Index i such that `h`, or the point next to it along the ray, is in shells i..i+1."""
     i = 0
@@ -182,7 +166,7 @@ def _layer_at(shells, h, descending):
     return i
 
 
-@kernel
+@inner_kernel
 def _next_shell(shells, layer, descending, r_bottom, t_closest, closest_squared):
     """Distance of the next shell that the ray crosses, and the layer behind it."""
     if descending and layer == 0:
@@ -201,26 +185,29 @@ def _next_shell(shells, layer, descending, r_bottom, t_closest, closest_squared)
     return math.inf, layer
 
 
-@kernel
+@inner_kernel
 def _limit_depth(medium, r, mu, t, t_next, transmittance, scratch):
     """Shorten a step until no wavelength that still counts gains more than one depth."""
-    h = radius_at(r, mu, 0.5 * (t + t_next)) - medium.r_bottom
-    fill_density(medium.density, medium.r_bottom, medium.r_top, h, scratch)
-    thickest = 0.0
-    for k in range(transmittance.size):
-        extinction = 0.0
-        for c in range(scratch.size):
-            extinction += scratch[c] * medium.extinction[c, k]
-        if transmittance[k] > 1e-6:
-            thickest = max(thickest, extinction)
-    depth = thickest * (t_next - t)
-    if depth <= MAX_STEP_OPTICAL_DEPTH:
-        return t_next
-    return t + (t_next - t) * max(MAX_STEP_OPTICAL_DEPTH / depth, 1.0 / 16.0)
+    # The density at the middle of a long step tells little of its start, hence the rounds.
+    for _ in range(8):
+        h = radius_at(r, mu, 0.5 * (t + t_next)) - medium.r_bottom
+        fill_density(medium.density, medium.r_bottom, medium.r_top, h, scratch)
+        thickest = 0.0
+        for k in range(transmittance.size):
+            extinction = 0.0
+            for c in range(scratch.size):
+                extinction += scratch[c] * medium.extinction[c, k]
+            if transmittance[k] > 1e-6:
+                thickest = max(thickest, extinction)
+        depth = thickest * (t_next - t)
+        if depth <= MAX_STEP_OPTICAL_DEPTH:
+            break
+        t_next = t + (t_next - t) * max(0.999 * MAX_STEP_OPTICAL_DEPTH / depth, 1.0 / 16.0)
+    return t_next
 
 
-@kernel
-def _add_step(medium, r, mu, t, step, lit, n, samples):
+@inner_kernel
+def _add_step(medium, r, mu, t, step, lit, n, samples, transmittance, column):
     """Append the two points of a step and return the largest transmittance behind it."""
     constituents, wavelengths = medium.extinction.shape
     for i in range(2):
@@ -234,25 +221,25 @@ def _add_step(medium, r, mu, t, step, lit, n, samples):
     for k in range(wavelengths):
         samples.weight[n, k] = 0.0
         samples.weight[n + 1, k] = 0.0
-        samples.transmittance[k] = 0.0
+        transmittance[k] = 0.0
     for c in range(constituents):
         low = samples.density[n, c]
         high = samples.density[n + 1, c]
-        to_low = samples.column[c] + step * (GAUSS_SELF * low + GAUSS_FAR * high)
-        to_high = samples.column[c] + step * (GAUSS_NEAR * low + GAUSS_SELF * high)
-        to_end = samples.column[c] + 0.5 * step * (low + high)
+        to_low = column[c] + step * (GAUSS_SELF * low + GAUSS_FAR * high)
+        to_high = column[c] + step * (GAUSS_NEAR * low + GAUSS_SELF * high)
+        to_end = column[c] + 0.5 * step * (low + high)
         samples.column_to[n, c] = to_low
         samples.column_to[n + 1, c] = to_high
-        samples.column[c] = to_end
+        column[c] = to_end
         for k in range(wavelengths):
             extinction = medium.extinction[c, k]
             samples.weight[n, k] -= extinction * to_low
             samples.weight[n + 1, k] -= extinction * to_high
-            samples.transmittance[k] -= extinction * to_end
+            transmittance[k] -= extinction * to_end
     brightest = 0.0
     for k in range(wavelengths):
         samples.weight[n, k] = 0.5 * step * fast_exp(samples.weight[n, k])
         samples.weight[n + 1, k] = 0.5 * step * fast_exp(samples.weight[n + 1, k])
-        samples.transmittance[k] = fast_exp(samples.transmittance[k])
-        brightest = max(brightest, samples.transmittance[k])
+        transmittance[k] = fast_exp(transmittance[k])
+        brightest = max(brightest, transmittance[k])
     return brightest

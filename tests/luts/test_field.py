@@ -7,12 +7,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.special import sph_harm_y
 
-from skybake.luts.field import fast_acos, log_twilight, sun_bins, sun_weights
-from skybake.luts.grid import sun_angles
+from skybake.luts.grid import empty_field, sun_angles
 from skybake.luts.harmonics import build_harmonics, fill_harmonics
+from skybake.optics.legendre import keep_peaks
+from tests.kernels import fast_acos, log_twilight, sun_weights
+from tests.media import plain_medium
 
 ANGLES = sun_angles(math.radians(118.0))
-BINS = sun_bins(ANGLES)
+FIELD = empty_field(keep_peaks(plain_medium()), np.array([0.0, 100.0]), ANGLES, 0)
 
 
 @numba.njit
@@ -41,7 +43,7 @@ def test_sun_angles_are_denser_than_a_degree_about_the_horizon():
 @given(st.floats(-1.0, 1.0))
 def test_sun_weights_restore_every_cubic_times_the_decline_of_twilight(mu_s):
     weights = np.empty(4)
-    j = sun_weights(ANGLES, BINS, mu_s, weights)
+    j = sun_weights(FIELD, mu_s, weights)
     angle = min(math.acos(mu_s), ANGLES[-1])
     decline = np.exp([log_twilight(node) - log_twilight(angle) for node in ANGLES[j : j + 4]])
     for power in range(4):
@@ -64,7 +66,7 @@ def test_twilight_is_taken_to_fall_from_the_horizon_on_and_ever_steeper_then_str
 @given(st.floats(-0.45, 1.0))
 def test_sun_lies_between_the_middle_two_of_its_four_nodes(mu_s):
     weights = np.empty(4)
-    j = sun_weights(ANGLES, BINS, mu_s, weights)
+    j = sun_weights(FIELD, mu_s, weights)
     first = ANGLES[0] if j == 0 else ANGLES[j + 1]
     last = ANGLES[-1] if j + 4 == ANGLES.size else ANGLES[j + 2]
     assert first - 1e-7 <= math.acos(mu_s) <= last + 1e-7

@@ -7,15 +7,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from skybake.luts.transmittance import (
+from skybake.luts.transmittance import build_columns
+from tests.kernels import (
     altitude_mu_from_unit,
-    build_columns,
+    distance_to_exit,
+    fill_density,
     fill_sun_column,
     fill_transmittance,
     unit_from_altitude_mu,
 )
-from skybake.transport.density import fill_density
-from skybake.transport.geometry import distance_to_exit
 from tests.truth import load_irradiance_truth, truth_medium
 
 NAMES = ("EARTH_A", "EARTH_HAZE", "MARS_A")

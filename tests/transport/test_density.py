@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from skybake.transport.density import fill_column, fill_density
-from skybake.transport.geometry import distance_to_exit
+from tests.kernels import distance_to_exit, fill_column, fill_density
 from tests.media import RADIUS, TOP, plain_medium
 
 SCALE_HEIGHTS = (1.2, 8.0, 11.1)

@@ -1,7 +1,7 @@
 import numba
 import numpy as np
 
-from skybake.transport.exponential import fast_exp
+from tests.kernels import fast_exp
 
 
 @numba.njit

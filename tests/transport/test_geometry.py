@@ -5,13 +5,13 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from skybake.transport.geometry import (
+from tests.kernels import (
     distance_to_entry,
     distance_to_exit,
     radius_at,
+    ray_limits,
     shadow_interval,
 )
-from skybake.transport.trace import ray_limits
 from tests.media import RADIUS, TOP, cosine_to_sun, plain_medium
 
 AIR = plain_medium()

@@ -30,12 +30,12 @@ def test_marching_agrees_with_tables_at_the_first_order(name, elevation, toleran
     medium = truth_medium(name)
     sky = truth_sky(name, elevation, h, "hillaire")
     arguments = rays(medium, h, elevation)
-    traced = trace_rays(*sky.atmosphere[:4], *arguments)
-    # From orbit steps crowd at the top of the air, so the haze at the limb needs many.
-    view_steps = 8192 if h > 100.0 else 1024
+    traced = trace_rays(*sky.atmosphere[:4], *arguments).single[..., :3]
+    # Where the shadow begins is known to a step: grazing rays in twilight need short ones.
+    view_steps = 1024 if elevation > 0.0 else 16384
     single, _ = march_rays(medium, *arguments, view_steps=view_steps, light_steps=256)
-    bright = traced.single > 1e-3 * traced.single.max(axis=0)
-    error = single[bright] / traced.single[bright] - 1.0
+    bright = traced > 1e-3 * traced.max(axis=0)
+    error = single[bright] / traced[bright] - 1.0
     assert np.abs(error).max() < tolerance
 
 
@@ -54,7 +54,7 @@ def test_sunlit_ground_by_marching_is_the_traced_ground_without_skylight(name):
     medium = truth_medium(name)
     sky = without_diffuse_light(truth_sky(name, 40.0, 10.0, "hillaire"))
     arguments = rays(medium, 10.0, 40.0)
-    traced = trace_rays(*sky.atmosphere[:4], *arguments).diffuse
+    traced = trace_rays(*sky.atmosphere[:4], *arguments).diffuse[:, :3]
     _, ground = march_rays(medium, *arguments, view_steps=1024)
     assert (ground > 0.0).any()
     np.testing.assert_allclose(ground, traced, rtol=2e-3, atol=1e-9)

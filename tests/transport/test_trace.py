@@ -5,9 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from skybake.transport.density import fill_column
+from skybake.transport.samples import BATCH_RAYS, MAX_SAMPLES, allocate_samples
 from skybake.transport.shells import altitude_shells
-from skybake.transport.trace import MAX_ARC, MAX_SAMPLES, allocate_samples, ray_limits, trace
+from skybake.transport.trace import MAX_ARC, trace
+from tests.kernels import fill_column, ray_limits
 from tests.media import RADIUS, TOP, cosine_to_sun, plain_medium
 from tests.truth import truth_medium
 
@@ -21,9 +22,11 @@ HORIZON = -math.sqrt(1.0 - (RADIUS / (RADIUS + 2.0)) ** 2)
 def traced(medium, r, mu, mu_s=1.0, nu=None, shells=None):
     samples = allocate_samples(medium)
     shells = altitude_shells(medium) if shells is None else shells
-    nu = mu if nu is None else nu
-    count, length, hits_ground = trace(medium, shells, MAX_ARC, r, mu, mu_s, nu, samples)
-    return samples, count, length, hits_ground
+    rays = np.array([[r, mu, mu_s, mu if nu is None else nu]])
+    assert trace(medium, shells, MAX_ARC, rays, 0, 1, samples) == 1
+    assert samples.first[0] == 0
+    whole = samples._replace(transmittance=samples.transmittance[0], column=samples.column[0])
+    return whole, samples.number[0], samples.length[0], samples.hits_ground[0]
 
 
 @given(
@@ -75,12 +78,7 @@ def test_rays_that_graze_the_ground_or_the_top_end(h, edge, offset):
         1.0,
         10.0,
         100.0,
-        pytest.param(
-            1e4,
-            marks=pytest.mark.xfail(
-                reason="a step is never cut below 1/16 of a layer, here 13 optical depths"
-            ),
-        ),
+        1e4,
     ],
 )
 @pytest.mark.parametrize(("h", "mu"), [(0.0, 1.0), (0.0, 0.0), (50.0, -0.01), (400.0, -0.9)])
@@ -168,3 +166,31 @@ def test_a_limb_seen_from_a_million_km_is_the_limb():
     half, _, _, _ = traced(EARTH, RADIUS + 20.0, 0.0, shells=EARTH_SHELLS)
     assert not hits_ground
     np.testing.assert_allclose(limb.column, 2.0 * half.column, rtol=1e-3)
+
+
+def test_rays_that_do_not_fit_into_a_batch_are_left_for_the_next():
+    h = np.linspace(0.0, 90.0, 3 * BATCH_RAYS)
+    rays = np.stack([RADIUS + h, 0.1 + 0.0 * h, 0.1 + 0.0 * h, 0.5 + 0.0 * h], axis=1)
+    samples = allocate_samples(EARTH)
+    begin, single = 0, []
+    while begin < len(rays):
+        end = trace(EARTH, EARTH_SHELLS, MAX_ARC, rays, begin, len(rays), samples)
+        assert begin < end <= begin + BATCH_RAYS
+        used = samples.first[: end - begin] + samples.number[: end - begin]
+        assert used.max() <= samples.distance.size
+        single.extend(samples.transmittance[: end - begin].copy())
+        begin = end
+    for i in (0, 100, len(rays) - 1):
+        alone = traced(EARTH, *rays[i], shells=EARTH_SHELLS)[0]
+        np.testing.assert_array_equal(single[i], alone.transmittance)
+
+
+def test_neighbours_share_samples_only_where_neither_meets_the_shadow():
+    lit, dark = [RADIUS, 0.2, 0.5, 0.6], [RADIUS, 0.2, -0.2, -0.9]
+    samples = allocate_samples(EARTH)
+    rays = np.array([lit, lit, dark, dark, lit])
+    assert trace(EARTH, EARTH_SHELLS, MAX_ARC, rays, 0, 5, samples) == 5
+    first = samples.first[:5].tolist()
+    assert first[0] == first[1]
+    assert len({*first[1:]}) == 4
+    np.testing.assert_array_equal(samples.transmittance[0], samples.transmittance[1])

@@ -1,0 +1,215 @@
+"""Light that the air along rays scatters out of the diffuse field, or the ground reflects."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from skybake.luts.field import altitude_weight, fill_ground_irradiance, sun_weights
+from skybake.luts.harmonics import fill_harmonics
+from skybake.optics.medium import LANES, Array
+from skybake.transport.geometry import radius_at
+from skybake.transport.kernel import inner_kernel, kernel
+
+NEGLIGIBLE = 3e-4
+"""Share of a ray's scattering below which an order l of a sample is left out."""
+
+
+class Fans(NamedTuple):
+    """Rays in groups that share their start and zenith angle, and so their samples.
+
+    Attributes
+    ----------
+    rays : ndarray of float64, shape (ray, 4)
+        As for `trace`.
+    first : ndarray of int64, shape (fan + 1,)
+        First ray of each fan, and the end of the last.
+    axes : ndarray of float64, shape (fan, 4)
+        One ray of each fan with the sun in the zenith, where it casts no shadow: the
+        diffuse field knows the shadow already.
+    """
+
+    rays: Array
+    first: npt.NDArray[np.int64]
+    axes: Array
+
+
+def group_rays(rays: Array) -> Fans:
+    """Find the fans among rays that are ordered by direction."""
+    is_new = np.any(rays[1:, :2] != rays[:-1, :2], axis=1)
+    first = np.concatenate([[0], np.flatnonzero(is_new) + 1, [len(rays)]]).astype(np.int64)
+    axes = rays[first[:-1]]
+    axes[:, 2], axes[:, 3] = 1.0, axes[:, 1]
+    return Fans(rays, first, axes)
+
+
+@kernel
+def add_diffuse(field, medium, fans, begin, end, samples, out):
+    """Add the light that rays bring out of the diffuse field.
+
+    Parameters
+    ----------
+    field : DiffuseField
+        The light to be scattered.
+    medium : Medium
+        The atmosphere, of a multiple of `LANES` wavelengths.
+    fans : Fans
+        The rays.
+    begin, end, samples
+        Fans, and the result of `trace` for their axes.
+    out : ndarray of float32, shape (ray, wavelength)
+        Receives radiance per unit irradiance. [sr⁻¹]
+
+    Notes
+    -----
+    At a sample the sum over degrees l, which rays of a fan share, is done first,
+    at each node of the sun's angle that any of them needs; a ray then sums orders m.
+    """
+    order, wavelengths = field.harmonics.order, out.shape[1]
+    rays, widest = fans.rays, 0
+    for fan in range(begin, end):
+        widest = max(widest, fans.first[fan + 1] - fans.first[fan])
+    node, weights, cosine = np.empty(widest, np.int64), np.empty((widest, 4)), np.empty(widest)
+    fourier = np.empty((field.sun_angle.size, (order + 1) * wavelengths), np.float32)
+    scattering = np.empty((order + 1, wavelengths), np.float32)
+    harmonic = np.empty(field.harmonics.degree.size)
+    whole, sky = np.empty(wavelengths), np.empty(wavelengths)
+    for fan in range(begin, end):
+        i, count = fans.first[fan], fans.first[fan + 1] - fans.first[fan]
+        r, mu = rays[i, 0], rays[i, 1]
+        first = samples.first[fan - begin]
+        last = first + samples.number[fan - begin]
+        for k in range(wavelengths):
+            whole[k] = 0.0
+        for n in range(first, last, 2):
+            _fill_scattering(field, samples, n, np.int64(1), scattering)
+            for k in range(wavelengths):
+                whole[k] += scattering[0, k]
+        # The field is smooth within a step, so that its two samples share a lookup where
+        # the middle of what they scatter lies.
+        for n in range(first, last, 2):
+            _fill_scattering(field, samples, n, order + 1, scattering)
+            degrees = _count_degrees(scattering, whole)
+            if degrees == 0:
+                continue
+            share = _second_share(field, samples, n)
+            t = (1.0 - share) * samples.distance[n] + share * samples.distance[n + 1]
+            radius = radius_at(r, mu, t)
+            mu_here = min(max((r * mu + t) / radius, -1.0), 1.0)
+            least, most = _fill_suns(
+                field, rays, i, count, t, radius, mu_here, node, weights, cosine
+            )
+            fill_harmonics(field.harmonics, mu_here, harmonic)
+            low, u = altitude_weight(field, radius - medium.r_bottom)
+            _sum_degrees(field, low, u, least, most, harmonic, scattering, degrees, fourier)
+            for q in range(count):
+                _add_orders(fourier, node[q], weights[q], cosine[q], degrees, out[i + q])
+        if samples.hits_ground[fan - begin]:
+            length = samples.length[fan - begin]
+            for q in range(count):
+                mu_s = (r * rays[i + q, 2] + length * rays[i + q, 3]) / medium.r_bottom
+                fill_ground_irradiance(field, mu_s, weights[q], sky)
+                for k in range(wavelengths):
+                    reflected = medium.ground_albedo[k] / math.pi * sky[k]
+                    out[i + q, k] += samples.transmittance[fan - begin, k] * reflected
+
+
+@inner_kernel
+def _fill_scattering(field, samples, n, degrees, out):
+    """Write weight * scattering coefficient * chi_l of a step's samples, (degree, wavelength)."""
+    for degree in range(degrees):
+        for k in range(out.shape[1]):
+            out[degree, k] = 0.0
+    for c in range(field.source.shape[0]):
+        low, high = samples.density[n, c], samples.density[n + 1, c]
+        if low + high == 0.0:
+            continue
+        for degree in range(degrees):
+            for k in range(out.shape[1]):
+                weight = low * samples.weight[n, k] + high * samples.weight[n + 1, k]
+                out[degree, k] += field.source[c, degree, k] * weight
+
+
+@inner_kernel
+def _second_share(field, samples, n):
+    """Share of a step's scattering, over all wavelengths, that its second sample has."""
+    first = second = 0.0
+    for c in range(field.source.shape[0]):
+        low, high = samples.density[n, c], samples.density[n + 1, c]
+        for k in range(samples.weight.shape[1]):
+            first += field.source[c, 0, k] * low * samples.weight[n, k]
+            second += field.source[c, 0, k] * high * samples.weight[n + 1, k]
+    return second / (first + second) if first + second > 0.0 else 0.5
+
+
+@inner_kernel
+def _count_degrees(scattering, whole):
+    """Orders l of a sample that matter beside what all samples of the ray scatter."""
+    for degree in range(scattering.shape[0] - 1, -1, -1):
+        for k in range(whole.size):
+            if abs(scattering[degree, k]) > NEGLIGIBLE * whole[k]:
+                return degree + 1
+    return 0
+
+
+@inner_kernel
+def _fill_suns(field, rays, first, count, t, radius, mu_here, node, weights, cosine):
+    """Find where the sun stands at a sample, for each ray; returns the nodes first and last."""
+    least, most = field.sun_angle.size, 0
+    for q in range(count):
+        r, mu_s, nu = rays[first + q, 0], rays[first + q, 2], rays[first + q, 3]
+        mu_s_here = min(max((r * mu_s + t * nu) / radius, -1.0), 1.0)
+        sines = math.sqrt((1.0 - mu_here * mu_here) * (1.0 - mu_s_here * mu_s_here))
+        across = 1.0 if sines < 1e-12 else (nu - mu_here * mu_s_here) / sines
+        cosine[q] = min(max(across, -1.0), 1.0)
+        node[q] = sun_weights(field, mu_s_here, weights[q])
+        least, most = min(least, node[q]), max(most, node[q])
+    return least, most + 4
+
+
+@inner_kernel
+def _sum_degrees(field, low, u, least, most, harmonic, scattering, degrees, out):
+    """Sum over l of the scattered moments at one altitude, shape (sun, m * wavelength)."""
+    order = field.harmonics.order
+    wavelengths = scattering.shape[1]
+    upper = np.float32(u)
+    for j in range(least, most):
+        p = 0
+        for m in range(degrees):
+            for block in range(0, wavelengths, LANES):
+                for k in range(block, block + LANES):
+                    out[j, m * wavelengths + k] = 0.0
+            for degree in range(m, degrees):
+                factor = np.float32(harmonic[p])
+                for block in range(0, wavelengths, LANES):
+                    for k in range(block, block + LANES):
+                        below = field.radiance[low, j, p, k]
+                        above = field.radiance[low + 1, j, p, k]
+                        out[j, m * wavelengths + k] += (
+                            factor * scattering[degree, k] * (below + upper * (above - below))
+                        )
+                p += 1
+            p += order + 1 - degrees
+
+
+@inner_kernel
+def _add_orders(fourier, node, weights, cosine, degrees, out):
+    """Add a Fourier series in azimuth, interpolated between four sun angles."""
+    a, b = np.float32(weights[0]), np.float32(weights[1])
+    c, d = np.float32(weights[2]), np.float32(weights[3])
+    for block in range(0, out.size, LANES):
+        before, now = np.float32(cosine), np.float32(1.0)
+        twice = np.float32(2.0 * cosine)
+        for first in range(block, degrees * out.size, out.size):
+            for k in range(LANES):
+                term = (
+                    a * fourier[node, first + k]
+                    + b * fourier[node + 1, first + k]
+                    + c * fourier[node + 2, first + k]
+                    + d * fourier[node + 3, first + k]
+                )
+                out[block + k] += now * term
+            before, now = now, twice * now - before
