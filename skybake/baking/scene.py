@@ -14,9 +14,10 @@ from skybake.optics.medium import Array
 from skybake.optics.spectrum import star_spectrum
 from skybake.preset import Planet
 from skybake.projection.equirect import Cells
+from skybake.sky.pixels import fill_directions
 from skybake.sky.sky import WAVELENGTHS, Sky
 from skybake.sky.sun import SunDisc
-from skybake.sky.view import SkyView, fill_directions
+from skybake.sky.view import SkyView
 from skybake.transport.kernel import run_rows
 
 PROBE_ZENITHS = 192

@@ -18,6 +18,7 @@ from skybake.optics.spectrum import star_irradiance
 from skybake.preset import Planet, load_preset
 from skybake.sky.view import (
     AZIMUTHS,
+    AZIMUTHS_FROM_SPACE,
     AZIMUTHS_TWILIGHT,
     SkyView,
     horizon_angles,
@@ -168,17 +169,18 @@ class Sky:
         Returns
         -------
         SkyView
-            For `skybake.sky.view.fill_directions`.
+            For `skybake.sky.pixels.fill_directions`.
         """
         zenith_first, zenith_horizon = horizon_angles(
             self.r, self.medium.r_bottom, self.medium.r_top
         )
-        is_day = self.sun_elevation > TWILIGHT_ELEVATION and zenith_first == 0.0
-        zenith, azimuth = table_directions(
-            zenith_first, zenith_horizon, AZIMUTHS if is_day else AZIMUTHS_TWILIGHT
-        )
+        is_day = self.sun_elevation > TWILIGHT_ELEVATION
         sun_zenith = math.pi / 2.0 - self.sun_elevation
-        theta, phi = np.broadcast_arrays(zenith[:, :, None], azimuth)
+        azimuths = AZIMUTHS if is_day else AZIMUTHS_TWILIGHT
+        if zenith_first > 0.0:
+            azimuths = AZIMUTHS_FROM_SPACE
+        zenith, phi = table_directions(sun_zenith, zenith_first, zenith_horizon, azimuths)
+        theta = np.broadcast_to(zenith[:, :, None], phi.shape)
         mu = np.cos(theta)
         nu = mu * math.cos(sun_zenith) + np.sin(theta) * math.sin(sun_zenith) * np.cos(phi)
         light = self._light(mu.ravel(), nu.ravel())

@@ -19,9 +19,9 @@ def test_shells_rise_from_the_ground_to_the_top(name, count):
     assert (np.diff(shells) > 0.0).all()
 
 
-def test_layers_of_haze_are_thinner_than_half_its_scale_height():
+def test_layers_of_haze_are_thinner_than_a_third_of_its_scale_height():
     shells = altitude_shells(truth_medium("EARTH_A"))
-    assert np.diff(shells[shells < 2.4]).max() < 0.6
+    assert np.diff(shells[shells < 2.4]).max() < 0.4
 
 
 def test_a_cloud_deck_aloft_gets_shells_at_its_edges():

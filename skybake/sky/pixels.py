@@ -1,0 +1,199 @@
+"""Evaluation of a sky's table at the pixels of a map."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from skybake.sky.view import dusk_coordinate, sun_range
+from skybake.transport.kernel import inner_kernel, kernel
+
+
+@inner_kernel
+def _cubic(x, size, out):
+    """Catmull-Rom weights of four nodes around `x`; returns the first, which may be -1."""
+    i = min(max(int(x), 0), size - 2)
+    s = min(max(x - i, 0.0), 1.0)
+    out[0] = 0.5 * s * (-1.0 + s * (2.0 - s))
+    out[1] = 1.0 + 0.5 * s * s * (3.0 * s - 5.0)
+    out[2] = 0.5 * s * (1.0 + s * (4.0 - 3.0 * s))
+    out[3] = 0.5 * s * s * (s - 1.0)
+    return i - 1
+
+
+@inner_kernel
+def _keep_inside(i, size, out):
+    """Let a parabola stand for the node beyond either end; returns the first node, in 0..size-4."""
+    if i < 0:
+        ghost = out[0]
+        out[0], out[1], out[2] = out[1] + 3.0 * ghost, out[2] - 3.0 * ghost, out[3] + ghost
+        out[3] = 0.0
+        return 0
+    if i > size - 4:
+        ghost = out[3]
+        out[3], out[2], out[1] = out[2] + 3.0 * ghost, out[1] - 3.0 * ghost, out[0] + ghost
+        out[0] = 0.0
+        return size - 4
+    return i
+
+
+@inner_kernel
+def _azimuth_weights(view, theta, phi, cosine, out):
+    """Weights of four azimuths; returns the row of `_fill_latitude` that holds the first."""
+    size = view.table.shape[2]
+    if view.zenith_first == 0.0:
+        return _cubic(phi / math.pi * (size - 1), size, out) + 1
+    middle, half = sun_range(view.sun_zenith, view.zenith_horizon, theta)
+    x = dusk_coordinate(middle, half, cosine)
+    return _keep_inside(_cubic(x * (size - 1), size, out), size, out) + 1
+
+
+@inner_kernel
+def _latitude_weights(view, side, zenith, out):
+    """Weights of four latitudes; at a table's edge the missing node is extrapolated."""
+    size = view.table.shape[1]
+    if side == 1:
+        span = math.pi - view.zenith_horizon
+        x = math.sqrt(max(zenith - view.zenith_horizon, 0.0) / span)
+    else:
+        span = view.zenith_horizon - view.zenith_first
+        x = 1.0 - math.sqrt(max(view.zenith_horizon - zenith, 0.0) / span)
+    return _keep_inside(_cubic(x * (size - 1), size, out), size, out)
+
+
+@inner_kernel
+def _fill_latitude(view, side, zenith, j_first, j_last, weights, out):
+    """Interpolate the table at one zenith angle into rows of `out`, (azimuth + 2, channel).
+
+    Row j holds azimuth j - 1; rows 0 and -1 mirror the neighbours of the sun's
+    meridian, about which the sky is symmetric.
+    """
+    i = _latitude_weights(view, side, zenith, weights)
+    azimuths, channels = view.table.shape[2], view.table.shape[3]
+    a, b = np.float32(weights[0]), np.float32(weights[1])
+    c, d = np.float32(weights[2]), np.float32(weights[3])
+    table = view.table[side]
+    for row in range(j_first, j_last):
+        j = azimuths - 1 - abs(azimuths - 1 - abs(row - 1))
+        for k in range(channels):
+            out[row, k] = (
+                a * table[i, j, k]
+                + b * table[i + 1, j, k]
+                + c * table[i + 2, j, k]
+                + d * table[i + 3, j, k]
+            )
+
+
+@inner_kernel
+def _fill_curves(view, half_sine_squared, out):
+    """Interpolate the lobes at the angle whose half has this squared sine, shape (lobe,)."""
+    last = view.curves.shape[0] - 1
+    if half_sine_squared < 0.5:
+        x = math.sqrt(math.sqrt(2.0 * half_sine_squared)) * (0.5 * last)
+    else:
+        x = last - math.sqrt(math.sqrt(2.0 * max(1.0 - half_sine_squared, 0.0))) * (0.5 * last)
+    i = min(int(x), last - 1)
+    u = np.float32(x - i)
+    for q in range(out.size):
+        out[q] = view.curves[i, q] + u * (view.curves[i + 1, q] - view.curves[i, q])
+
+
+@inner_kernel
+def _add_pixel(latitude, j, weights, share, curves, out):
+    """Add `share` of the radiance at azimuth rows j..j+3 to `out`, shape (3,)."""
+    a, b = np.float32(share * weights[0]), np.float32(share * weights[1])
+    c, d = np.float32(share * weights[2]), np.float32(share * weights[3])
+    lobes = curves.size
+    for k in range(3):
+        total = np.float32(0.0)
+        for q in range(lobes):
+            p = k * lobes + q
+            total += curves[q] * (
+                a * latitude[j, p]
+                + b * latitude[j + 1, p]
+                + c * latitude[j + 2, p]
+                + d * latitude[j + 3, p]
+            )
+        out[k] += total
+
+
+@kernel
+def fill_directions(view, zenith, azimuth, height, first, last, out):
+    """Evaluate a sky at pixels.
+
+    Parameters
+    ----------
+    view : SkyView
+        The table.
+    zenith : ndarray of float64, shape (row, 1) or (row, column)
+        Zenith angles of the pixels' centres; one column if a row shares its. [rad]
+    azimuth : ndarray of float64, shape (1, column) or (row, column)
+        Azimuths relative to the sun; one row if all rows share it. [rad]
+    height : float
+        Extent of a pixel in zenith angle, over which the edges of the planet and of
+        its air are smoothed by the share of the pixel on either side. [rad]
+    first, last : int
+        Rows to fill.
+    out : ndarray of float32, shape (last - first, column, 3)
+        Receives RGB.
+    """
+    azimuths, channels = view.table.shape[2], view.table.shape[3]
+    latitude = np.empty((2, azimuths + 2, channels), np.float32)
+    curves = np.empty(view.curves.shape[1], np.float32)
+    columns = out.shape[1]
+    angle, cosine = np.empty(columns), np.empty(columns)
+    row, weights = np.empty((2, columns), np.int64), np.empty((2, columns, 4))
+    theta, share, across = np.empty(2), np.zeros(2), np.empty(4)
+    shares_zenith, shares_azimuth = zenith.shape[1] == 1, azimuth.shape[0] == 1
+    keeps_weights = shares_zenith and shares_azimuth and view.zenith_first == 0.0
+    has_weights = np.zeros(2, np.bool_)
+    for i in range(first, last):
+        if i == first or not shares_azimuth:
+            for j in range(columns):
+                phi = azimuth[0 if shares_azimuth else i, j]
+                angle[j] = abs(phi - 2.0 * math.pi * math.floor(phi / (2.0 * math.pi) + 0.5))
+                cosine[j] = math.cos(angle[j])
+        along_squared = sines = 0.0
+        for j in range(columns):
+            if j == 0 or not shares_zenith:
+                middle = zenith[i, 0 if shares_zenith else j]
+                _split_pixel(view, middle, height, theta, share)
+                along_squared = math.sin(0.5 * (middle - view.sun_zenith)) ** 2
+                sines = math.sin(middle) * math.sin(view.sun_zenith)
+                for side in range(2):
+                    if share[side] == 0.0:
+                        continue
+                    end = columns if shares_zenith else j + 1
+                    if not (keeps_weights and has_weights[side]):
+                        has_weights[side] = True
+                        for q in range(j, end):
+                            row[side, q] = _azimuth_weights(
+                                view, theta[side], angle[q], cosine[q], weights[side, q]
+                            )
+                    begin = 0 if shares_zenith else row[side, j]
+                    end = azimuths + 2 if shares_zenith else begin + 4
+                    _fill_latitude(view, side, theta[side], begin, end, across, latitude[side])
+            across_squared = 0.5 * (1.0 - cosine[j])
+            _fill_curves(view, min(along_squared + sines * across_squared, 1.0), curves)
+            pixel = out[i - first, j]
+            for k in range(3):
+                pixel[k] = 0.0
+            for side in range(2):
+                if share[side] > 0.0:
+                    _add_pixel(
+                        latitude[side], row[side, j], weights[side, j], share[side], curves, pixel
+                    )
+
+
+@inner_kernel
+def _split_pixel(view, theta, height, middle, share):
+    """Shares of a pixel above and below the horizon, and the zenith angle of each's middle."""
+    low, high = theta - 0.5 * height, theta + 0.5 * height
+    begin = max(low, view.zenith_first) if view.zenith_first > 0.0 else low
+    end = min(high, view.zenith_horizon)
+    share[0] = max(end - begin, 0.0) / height
+    middle[0] = theta if share[0] > 0.999 else 0.5 * (begin + end)
+    begin = max(low, view.zenith_horizon)
+    share[1] = max(high - begin, 0.0) / height
+    middle[1] = theta if share[1] > 0.999 else 0.5 * (begin + high)
