@@ -138,7 +138,7 @@ def render(**options: Any) -> None:
     request.check_together(click.get_current_context())
     settings = request.map_settings(options)
 
-    from skybake.baking import bake, default_path
+    from skybake.baking import bake, companion, default_path
     from skybake.preset import load_preset
 
     planet = load_preset(options["preset"])
@@ -146,7 +146,7 @@ def render(**options: Any) -> None:
     quiet = options["quiet"]
     if not quiet:
         report.announce(output)
-    with report.progress_bar(quiet=quiet) as progress:
+    with companion.beside(), report.progress_bar(quiet=quiet) as progress:
         baked = bake(
             planet,
             output,

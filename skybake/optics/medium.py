@@ -115,8 +115,8 @@ def pad_wavelengths(medium: Medium) -> Medium:
     last = medium.ground_albedo.size - 1
     index = np.minimum(np.arange(-(-(last + 1) // LANES) * LANES), last)
     return medium._replace(
-        scattering=medium.scattering[:, index],
-        extinction=medium.extinction[:, index],
+        scattering=np.ascontiguousarray(medium.scattering[:, index]),
+        extinction=np.ascontiguousarray(medium.extinction[:, index]),
         phase=np.ascontiguousarray(medium.phase[:, :, index]),
         ground_albedo=medium.ground_albedo[index],
     )

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from skybake.luts.transmittance import fill_sun_column
-from skybake.optics.medium import Array, Medium
+from skybake.optics.medium import Array
 from skybake.optics.spectrum import limb_darkening
 from skybake.sky.sky import Sky
 from skybake.transport.geometry import distance_to_entry, radius_at
@@ -79,7 +79,9 @@ class SunDisc:
         sky = self._sky
         columns = np.empty((zenith.size, sky.medium.extinction.shape[0]))
         visible = np.empty(zenith.size, np.bool_)
-        _fill_columns(sky.medium, sky.atmosphere.columns, sky.r, np.cos(zenith), columns, visible)
+        fill_sight_columns(
+            sky.medium, sky.atmosphere.columns, sky.r, np.cos(zenith), columns, visible
+        )
         transmittance: Array = np.exp(-columns @ sky.medium.extinction)
         return np.where(visible[:, None], transmittance, 0.0)
 
@@ -106,7 +108,7 @@ class SunDisc:
 
 
 @kernel
-def _fill_columns(medium: Medium, columns: Array, r: float, mu: Array, out: Array, visible: Array):
+def fill_sight_columns(medium, columns, r, mu, out, visible):
     """Write the columns of rays to space, and whether no ground is in the way."""
     for i in range(mu.size):
         start, start_mu = r, mu[i]

@@ -5,10 +5,13 @@ from __future__ import annotations
 import functools
 import hashlib
 import os
+import subprocess
+import sys
 import threading
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -58,11 +61,11 @@ def _compile_later(function: Callable[..., Any], **extra: bool) -> Any:
         config.CACHE_DIR = previous
     stored = dispatcher._cache
     if hasattr(stored, "_load_overload"):
-        stored.load_overload = functools.partial(_load_compiled, stored)
+        stored.load_overload = functools.partial(_load_compiled, stored, function.__name__)
     return dispatcher
 
 
-def _load_compiled(stored: Any, signature: Any, target_context: Any) -> Any:
+def _load_compiled(stored: Any, name: str, signature: Any, target_context: Any) -> Any:
     """Load a kernel from disk without the machinery that compiles kernels.
 
     As it comes, numba imports some 180 modules (and scipy, where it is installed)
@@ -72,7 +75,57 @@ def _load_compiled(stored: Any, signature: Any, target_context: Any) -> Any:
     """
     rtsys.initialize(target_context)
     with stored._guard_against_spurious_io_errors():
-        return stored._load_overload(signature, target_context)
+        compiled = stored._load_overload(signature, target_context)
+        if compiled is None and name in _beside.names:
+            _beside.wait()
+            compiled = stored._load_overload(signature, target_context)
+        return compiled
+
+
+class _Beside:
+    """A process that compiles kernels into the same folder."""
+
+    def __init__(self) -> None:
+        self.names: frozenset[str] = frozenset()
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def start(self, command: list[str], names: frozenset[str]) -> None:
+        nothing = subprocess.DEVNULL
+        self._process = subprocess.Popen(command, stdin=nothing, stdout=nothing, stderr=nothing)
+        self.names = names
+
+    def wait(self) -> None:
+        if self._process is not None:
+            self._process.wait()
+        self.names = frozenset()
+
+    def stop(self) -> None:
+        if self._process is not None:
+            self._process.terminate()
+        self.wait()
+
+
+_beside = _Beside()
+
+
+@contextmanager
+def compile_beside(module: str, names: frozenset[str]) -> Iterator[None]:
+    """Have another process compile kernels that this one needs later, where that helps.
+
+    Parameters
+    ----------
+    module : str
+        Compiles them when it is run.
+    names : frozenset of str
+        The kernels; whoever calls one waits until the process has ended, and compiles
+        itself what it then still does not find.
+    """
+    if cache_directory() is not None and thread_count() > 1:
+        _beside.start([sys.executable, "-m", module], names)
+    try:
+        yield
+    finally:
+        _beside.stop()
 
 
 @functools.cache

@@ -1,0 +1,55 @@
+"""Compiles half of a render's kernels when it is run, beside the process that renders.
+
+Compiling keeps one CPU busy, and a first render spends most of its time on it. The
+kernels here are those that a render needs last. Arguments only have to be of the
+right types: no pixel and no ray is asked for.
+"""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager, nullcontext
+
+import numpy as np
+
+from skybake.luts.grid import ORDER, empty_field, sun_angles
+from skybake.luts.harmonics import fill_harmonics
+from skybake.luts.multiple import add_diffuse, group_rays
+from skybake.optics.legendre import truncate_peaks
+from skybake.optics.medium import build_medium, pad_wavelengths
+from skybake.preset import load_preset
+from skybake.sky.pixels import fill_directions
+from skybake.sky.sky import WAVELENGTHS
+from skybake.sky.sun import fill_sight_columns
+from skybake.sky.view import SkyView
+from skybake.transport.kernel import compile_beside, is_warm
+from skybake.transport.samples import allocate_samples
+
+KERNELS = (fill_harmonics, add_diffuse, fill_sight_columns, fill_directions)
+
+
+def beside() -> AbstractContextManager[None]:
+    """Run this module beside a process that finds no kernels on disk, while it renders."""
+    if is_warm():
+        return nullcontext()
+    return compile_beside(__name__, frozenset(kernel.py_func.__name__ for kernel in KERNELS))
+
+
+def compile_kernels() -> None:
+    """Call each of `KERNELS` for nothing."""
+    seen = build_medium(load_preset("earth"), WAVELENGTHS)
+    cut = truncate_peaks(pad_wavelengths(seen), ORDER)
+    field = empty_field(cut, np.array([0.0, 1.0]), sun_angles(2.0), ORDER)
+    fill_harmonics(field.harmonics, 0.0, np.empty(field.harmonics.degree.size))
+    light = np.zeros((0, cut.medium.ground_albedo.size), np.float32)
+    rays = group_rays(np.zeros((1, 4)))
+    add_diffuse(field, cut.medium, rays, 0, 0, allocate_samples(cut.medium), light)
+    table, mu = np.zeros((1, 1, 1)), np.zeros(0)
+    columns, visible = np.zeros((0, seen.density.shape[1])), np.zeros(0, np.bool_)
+    fill_sight_columns(seen, table, seen.r_bottom, mu, columns, visible)
+    view = SkyView(0.0, 1.5, 1.0, np.zeros((2, 4, 4, 3), np.float32), np.zeros((2, 1), np.float32))
+    pixels = np.zeros((0, 1, 3), np.float32)
+    fill_directions(view, np.zeros((1, 1)), np.zeros((1, 1)), 1.0, 0, 0, pixels)
+
+
+if __name__ == "__main__":
+    compile_kernels()

@@ -1,0 +1,44 @@
+"""A first render, whose kernels two processes compile."""
+
+import os
+import subprocess
+import sys
+from collections import Counter
+
+from skybake.baking.companion import KERNELS
+from skybake.transport.kernel import compile_beside, thread_count
+
+
+def render(folder, **environment):
+    command = [sys.executable, "-m", "skybake", "render", "--size", "64x32", "-o", "sky.exr"]
+    return subprocess.run(
+        command,
+        cwd=folder,
+        env={**os.environ, "SKYBAKE_CACHE_DIR": str(folder / "cache"), **environment},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=240,
+    )
+
+
+def test_first_render_compiles_each_kernel_for_one_set_of_types(tmp_path):
+    """Two sets would mean that the other process has compiled for nothing."""
+    result = render(tmp_path, PYTHONPATH=os.getcwd())
+    assert result.returncode == 0, result.stderr
+    assert result.stderr.count("compiling kernels") == 1
+    compiled = Counter(path.name.split("-")[0] for path in tmp_path.rglob("*.nbc"))
+    assert {name: count for name, count in compiled.items() if count > 1} == {}
+    names = {name.split(".")[-1] for name in compiled}
+    assert names >= {kernel.py_func.__name__ for kernel in KERNELS}
+    again = render(tmp_path, PYTHONPATH=os.getcwd())
+    assert again.returncode == 0
+    assert "compiling" not in again.stderr
+    assert Counter(path.name.split("-")[0] for path in tmp_path.rglob("*.nbc")) == compiled
+
+
+def test_a_process_that_fails_beside_is_neither_waited_for_nor_missed(capfd):
+    with compile_beside("skybake.no_such_module", frozenset({"trace"})):
+        pass
+    assert thread_count() >= 1
+    assert capfd.readouterr() == ("", "")
