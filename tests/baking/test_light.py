@@ -1,9 +1,15 @@
 """What light a map holds, summed over its texels."""
 
+import math
+
 import numpy as np
 import pytest
 
+from skybake.baking import MapSettings
+from skybake.baking.scene import Scene
+from skybake.preset import load_preset
 from tests.baking.maps import bake_map, illuminance, pixels, texels
+from tests.kernels import fill_ground_irradiance, fill_sun_column
 
 
 @pytest.mark.parametrize("elevation", [60.0, 5.0])
@@ -87,3 +93,32 @@ def test_marching_gives_the_same_sun_and_less_sky(tmp_path):
     march, _ = bake_map(tmp_path / "march.exr", width=32, method="march")
     assert march.direct_illuminance == pytest.approx(full.direct_illuminance, rel=1e-3)
     assert 0.5 < march.sky_illuminance / full.sky_illuminance < 0.95
+
+
+def solved_illuminance(scene):
+    """Illuminance of the ground by sun and sky as the solver has it, in lx.
+
+    Light scattered within forward peaks counts as the sun's there, so only the sum of
+    both is what a map holds.
+    """
+    air = scene.sky.atmosphere
+    medium = air.cut.medium
+    mu_s = math.sin(scene.sky.sun_elevation)
+    column, sky = np.zeros(air.columns.shape[2]), np.empty(medium.ground_albedo.size)
+    fill_ground_irradiance(air.field, mu_s, np.empty(4), sky)
+    sees_sun = mu_s > 0.0 and fill_sun_column(
+        air.columns, medium.r_bottom, medium.r_top, medium.r_bottom, mu_s, column
+    )
+    direct = mu_s * np.exp(-column @ medium.extinction) if sees_sun else 0.0
+    luminous = scene.xyz_weights[:, 1]
+    return float((direct + sky)[: luminous.size] @ luminous)
+
+
+@pytest.mark.parametrize("elevation", [60.0, 10.0, 2.0, -2.0, -6.0, -9.0])
+@pytest.mark.parametrize("preset", ["earth", "mars"])
+def test_light_of_a_map_is_the_solvers_own_within_half_a_percent(tmp_path, preset, elevation):
+    baked, settings = bake_map(
+        tmp_path / "a.exr", preset, elevation, width=512, units="nits", pixel="float"
+    )
+    scene = Scene(load_preset(preset), MapSettings(math.radians(elevation)))
+    assert illuminance(baked, settings) == pytest.approx(solved_illuminance(scene), rel=0.005)
