@@ -148,14 +148,17 @@ def fill_directions(view, zenith, azimuth, height, first, last, out):
     shares_zenith, shares_azimuth = zenith.shape[1] == 1, azimuth.shape[0] == 1
     keeps_weights = shares_zenith and shares_azimuth and view.zenith_first == 0.0
     has_weights = np.zeros(2, np.bool_)
+    is_mirrored = False
     for i in range(first, last):
         if i == first or not shares_azimuth:
             for j in range(columns):
                 phi = azimuth[0 if shares_azimuth else i, j]
                 angle[j] = abs(phi - 2.0 * math.pi * math.floor(phi / (2.0 * math.pi) + 0.5))
                 cosine[j] = math.cos(angle[j])
+            is_mirrored = shares_zenith and _is_mirrored(angle)
+        computed = (columns + 1) // 2 if is_mirrored else columns
         along_squared = sines = 0.0
-        for j in range(columns):
+        for j in range(computed):
             if j == 0 or not shares_zenith:
                 middle = zenith[i, 0 if shares_zenith else j]
                 _split_pixel(view, middle, height, theta, share)
@@ -164,7 +167,7 @@ def fill_directions(view, zenith, azimuth, height, first, last, out):
                 for side in range(2):
                     if share[side] == 0.0:
                         continue
-                    end = columns if shares_zenith else j + 1
+                    end = computed if shares_zenith else j + 1
                     if not (keeps_weights and has_weights[side]):
                         has_weights[side] = True
                         for q in range(j, end):
@@ -184,6 +187,18 @@ def fill_directions(view, zenith, azimuth, height, first, last, out):
                     _add_pixel(
                         latitude[side], row[side, j], weights[side, j], share[side], curves, pixel
                     )
+        for j in range(computed, columns):
+            for k in range(3):
+                out[i - first, j, k] = out[i - first, columns - 1 - j, k]
+
+
+@inner_kernel
+def _is_mirrored(angle):
+    """Whether the right half of a row sees the left half's angles from the sun, in reverse."""
+    for j in range(angle.size // 2):
+        if abs(angle[j] - angle[angle.size - 1 - j]) > 1e-12:
+            return False
+    return True
 
 
 @inner_kernel
