@@ -43,7 +43,7 @@ class Anderson:
         normal = (changes @ changes.transpose(0, 2, 1)).astype(float)
         trace = np.trace(normal, axis1=1, axis2=2)[:, None, None]
         # Nearly parallel residuals leave the weights undetermined; this keeps them small.
-        normal = normal + (1e-7 * trace + 1e-300) * np.eye(normal.shape[1])
+        normal = normal + (1e-7 * trace + 1e-36) * np.eye(normal.shape[1])
         right = (changes @ residuals[-1][:, :, None]).astype(float)
         weights = np.linalg.solve(normal, right).astype(image.dtype)
         mixed: Array = image - (moves.transpose(0, 2, 1) @ weights)[:, :, 0]

@@ -110,6 +110,8 @@ def solve_field(cut: Truncation, columns: Array) -> DiffuseField:
         change = _relative(_state(settled) - _state(new), _state(total), grid)
         if change.max() < TOLERANCE:
             return field
+        if not np.isfinite(change).all():
+            break
     raise _no_convergence(MAX_PASSES, TOLERANCE, float(change.max()))
 
 
@@ -132,6 +134,8 @@ def _settle(
         # In thick air a small change is not a small error.
         if turn > 0 and change.max() * left / (1.0 - left) < COARSE_TOLERANCE:
             return _field(new, state)
+        if not np.isfinite(change).all():
+            break
         previous = float(change[:sunlit].max())
     raise _no_convergence(MAX_COARSE_PASSES, COARSE_TOLERANCE, float(change.max()))
 
