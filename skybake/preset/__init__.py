@@ -1,5 +1,6 @@
 """Planets from TOML: where presets live, what they may say, and every check on it."""
 
+from skybake.preset.extend import Override, Overrides
 from skybake.preset.find import preset_names, preset_text
 from skybake.preset.load import load_preset
 from skybake.preset.model import (
@@ -35,6 +36,8 @@ __all__ = [
     "Gas",
     "Ground",
     "HenyeyGreensteinPhase",
+    "Override",
+    "Overrides",
     "Phase",
     "Planet",
     "Profile",

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+import os
 from pathlib import Path
 
 from skybake.errors import PresetError
+from skybake.preset.document import Source
 from skybake.preset.find import read_text
 from skybake.preset.message import shown
 
@@ -17,7 +19,7 @@ def is_user_file(name: str) -> bool:
     return name.endswith(".csv") or "/" in name or "\\" in name
 
 
-def load_table(name: str, where: str, folder: Path, column: str) -> dict[str, tuple[float, ...]]:
+def load_table(name: str, where: str, source: Source, column: str) -> dict[str, tuple[float, ...]]:
     """Read a table.
 
     Parameters
@@ -26,8 +28,9 @@ def load_table(name: str, where: str, folder: Path, column: str) -> dict[str, tu
         Name of a table that comes with skybake, or a CSV file of the user's.
     where : str
         Where the preset names it, for messages.
-    folder : Path
-        What the user's paths are relative to: the preset's folder.
+    source : Source
+        What the user's paths are relative to; out of a file's folder leads only an
+        absolute path, so that a preset from elsewhere stays within what came with it.
     column : str
         A column that it needs, to tell which tables of skybake would do.
 
@@ -43,7 +46,9 @@ def load_table(name: str, where: str, folder: Path, column: str) -> dict[str, tu
     """
     if is_user_file(name):
         where = f"{where}: {shown(name)}"
-        return _parse(where, read_text(folder / name, where))
+        if source.is_file and Path(os.path.normpath(name)).parts[0] == os.pardir:
+            raise PresetError(f"{where}: must lie in the preset's folder or be an absolute path")
+        return _parse(where, read_text(source.folder / name, where))
     paths = {path.stem: path for path in _DATA.glob("*.csv")}
     if name not in paths:
         known = ", ".join(sorted(k for k, path in paths.items() if column in _columns(path)))
