@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from itertools import pairwise
+from typing import NamedTuple
 
 from skybake.constants import DOBSON_UNIT
 from skybake.preset.model import (
@@ -30,7 +31,14 @@ GASES = ("dry_air", "co2", "n2", "ar")
 PROFILES = ("exponential", "tent", "tabulated")
 
 
-def read_constituent(name: str, section: Section, top: float | None) -> Constituent:
+class Top(NamedTuple):
+    """Top of the atmosphere [km], and where it was written, for messages."""
+
+    altitude: float
+    where: str
+
+
+def read_constituent(name: str, section: Section, top: Top | None) -> Constituent:
     """Read ``[constituents.name]``.
 
     Parameters
@@ -39,8 +47,8 @@ def read_constituent(name: str, section: Section, top: float | None) -> Constitu
         Its key.
     section : Section
         Its table.
-    top : float or None
-        Altitude that a tabulated profile must reach; None if that is faulty itself. [km]
+    top : Top or None
+        Altitude that a tabulated profile must reach; None if that is faulty itself.
 
     Raises
     ------
@@ -50,7 +58,7 @@ def read_constituent(name: str, section: Section, top: float | None) -> Constitu
     return _READERS[section.choice("kind", tuple(_READERS))](name, section, top)
 
 
-def _read_gas(name: str, section: Section, top: float | None) -> Gas:
+def _read_gas(name: str, section: Section, top: Top | None) -> Gas:
     read = Gather(section)
     profile = read(_read_gas_profile, section, name, top)
     pressure = read(section.number, "pressure_pa", 0.0, 1e9)
@@ -60,7 +68,7 @@ def _read_gas(name: str, section: Section, top: float | None) -> Gas:
     return Gas(name, profile, pressure, temperature, composition)
 
 
-def _read_gas_profile(section: Section, column: str, top: float | None) -> Profile:
+def _read_gas_profile(section: Section, column: str, top: Top | None) -> Profile:
     profile = _read_profile(section, column, top)
     if isinstance(profile, TabulatedProfile):
         # Pressure and temperature are those of the ground.
@@ -83,7 +91,7 @@ def _read_composition(section: Section) -> tuple[tuple[str, float], ...]:
     return composition
 
 
-def _read_absorber(name: str, section: Section, top: float | None) -> Absorber:
+def _read_absorber(name: str, section: Section, top: Top | None) -> Absorber:
     read = Gather(section)
     profile = read(_read_shape, section, name, top)
     column = read(section.number, "column_du", 0.0, 1e6)
@@ -92,7 +100,7 @@ def _read_absorber(name: str, section: Section, top: float | None) -> Absorber:
     return Absorber(name, profile, column * DOBSON_UNIT, cross_section)
 
 
-def _read_aerosol(name: str, section: Section, top: float | None) -> Aerosol:
+def _read_aerosol(name: str, section: Section, top: Top | None) -> Aerosol:
     read = Gather(section)
     profile = read(_read_shape, section, name, top)
     optical_depth = read(section.number, "optical_depth", 0.0, 1e3)
@@ -121,7 +129,7 @@ def _read_extinction_spectrum(section: Section, wavelength: float | None) -> Spe
     return spectrum
 
 
-def _read_coefficients(name: str, section: Section, top: float | None) -> Coefficients:
+def _read_coefficients(name: str, section: Section, top: Top | None) -> Coefficients:
     read = Gather(section)
     profile = read(_read_profile, section, name, top)
     scattering = read(section.spectrum, "scattering_per_km", 0.0, 1e4, default=0.0)
@@ -137,7 +145,7 @@ def _read_phase_if_due(section: Section, scattering: Spectrum | None) -> Phase:
     return HenyeyGreensteinPhase(Spectrum(section.where("phase"), (), (0.0,)))
 
 
-_READERS: dict[str, Callable[[str, Section, float | None], Constituent]] = {
+_READERS: dict[str, Callable[[str, Section, Top | None], Constituent]] = {
     "gas": _read_gas,
     "absorber": _read_absorber,
     "aerosol": _read_aerosol,
@@ -145,7 +153,7 @@ _READERS: dict[str, Callable[[str, Section, float | None], Constituent]] = {
 }
 
 
-def _read_profile(section: Section, column: str, top: float | None) -> Profile:
+def _read_profile(section: Section, column: str, top: Top | None) -> Profile:
     if isinstance(section.raw("profile"), str):
         altitude, density = section.columns("profile", "altitude_km", column)
         return _checked_profile(section, altitude, density, top)
@@ -157,7 +165,7 @@ def _read_profile(section: Section, column: str, top: float | None) -> Profile:
         read.finish()
         return ExponentialProfile(scale_height)
     if kind == "tent":
-        center = read(inner.number, "center_km", 0.0, 1e6 if top is None else top)
+        center = read(inner.number, "center_km", 0.0, 1e6 if top is None else top.altitude)
         half_width = read(inner.number, "half_width_km", 1e-3, 1e5)
         read.finish()
         return TentProfile(center, half_width)
@@ -168,7 +176,7 @@ def _read_profile(section: Section, column: str, top: float | None) -> Profile:
 
 
 def _checked_profile(
-    section: Section, altitude: tuple[float, ...], density: tuple[float, ...], top: float | None
+    section: Section, altitude: tuple[float, ...], density: tuple[float, ...], top: Top | None
 ) -> TabulatedProfile:
     if len(altitude) != len(density) or len(altitude) < 2:
         section.fail("profile", "altitude_km and density must be equally many, at least 2")
@@ -177,17 +185,18 @@ def _checked_profile(
     if min(density) < 0.0 or max(density) == 0.0:
         section.fail("profile", "densities must be at least 0 and not all 0")
     starts_late = altitude[0] > 0.0 and density[0] > 0.0
-    ends_early = top is not None and altitude[-1] < top and density[-1] > 0.0
-    if starts_late or ends_early:
+    span = f"got {altitude[0]:g} to {altitude[-1]:g} km"
+    if top is not None and altitude[-1] < top.altitude and density[-1] > 0.0:
         section.fail(
             "profile",
-            f"must cover 0 to {altitude[-1] if top is None else top:g} km or end in density 0, "
-            f"got {altitude[0]:g} to {altitude[-1]:g} km",
+            f"must cover 0 to {top.altitude:g} km or end in density 0, {span} (see {top.where})",
         )
+    if starts_late:
+        section.fail("profile", f"must begin at 0 km or with density 0, {span}")
     return TabulatedProfile(altitude, density)
 
 
-def _read_shape(section: Section, column: str, top: float | None) -> Profile:
+def _read_shape(section: Section, column: str, top: Top | None) -> Profile:
     """Profile of which only the shape counts, with a maximum of about 1."""
     profile = _read_profile(section, column, top)
     if isinstance(profile, TabulatedProfile):

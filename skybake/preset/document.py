@@ -117,6 +117,11 @@ class Document:
             key = key[:-1]
         return self._sources[key]
 
+    def place(self, key: Key) -> str:
+        """Where a key was written, and its name, as messages begin."""
+        file = self.source(key).name
+        return f"{file}: {dotted(key)}" if key else file
+
     def leaves(self) -> list[tuple[Key, Any]]:
         """All values that are no tables, with their keys."""
         return _leaves(self.data, ())

@@ -138,7 +138,7 @@ def _full_key(document: Document, override: Override) -> Key:
     if all(map(NAME.fullmatch, key)) and _leads_somewhere(key, names):
         return key
     keys = [dotted(key).removeprefix("constituents.") for key, _ in document.leaves()]
-    like = nearest(override.key.removeprefix("constituents."), keys)
+    like = nearest(override.key.removeprefix("constituents."), [*names, *TOP_KEYS, *keys])
     heads = ", ".join((*names, *(name for name in TOP_KEYS if name != "constituents")))
     raise PresetError(
         f"{override.source}: {shown(override.key)}: unknown key; "

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from skybake.constants import ASTRONOMICAL_UNIT
-from skybake.preset.constituents import read_constituent
+from skybake.preset.constituents import Top, read_constituent
 from skybake.preset.document import Document
 from skybake.preset.extend import NAME, Overrides, load_document
 from skybake.preset.find import find_preset
@@ -81,17 +81,20 @@ def planet_from_document(document: Document, *, name: str) -> Planet:
     data_quality = read(_read_data_quality, top)
     rendering = read(top.choice, "rendering", ("spectral", "rgb"), default="spectral")
     wavelengths = read(_read_wavelengths, top, rendering)
-    top.cover = (min(wavelengths), max(wavelengths)) if wavelengths else VISIBLE
-    radius, atmosphere_top = read(_read_body, top) or (None, None)
+    if wavelengths:
+        top.cover = (min(wavelengths), max(wavelengths))
+    elif rendering == "spectral" and not top.has("wavelengths_nm"):
+        top.cover = VISIBLE
+    radius, highest = read(_read_body, top) or (None, None)
     star = read(_read_star, top)
     ground = read(_read_ground, top)
-    constituents = read(_read_constituents, top, atmosphere_top)
+    constituents = read(_read_constituents, top, highest)
     read.finish()
     return Planet(
         name=name,
         title=title,
         radius=radius,
-        atmosphere_top=atmosphere_top,
+        atmosphere_top=highest.altitude,
         rendering=cast(Any, rendering),
         wavelengths=wavelengths,
         star=star,
@@ -120,14 +123,14 @@ def _read_wavelengths(top: Section, rendering: str) -> tuple[float, ...] | None:
     return wavelengths
 
 
-def _read_body(top: Section) -> tuple[float, float]:
+def _read_body(top: Section) -> tuple[float, Top]:
     section = top.section("planet")
     read = Gather(section)
     radius = read(section.number, "radius_km", 1.0, 1e6)
     # A top beyond one radius would be an exosphere, which no plane layer of tables resolves.
     atmosphere_top = read(section.number, "atmosphere_top_km", 0.1, radius or 1e6)
     read.finish()
-    return radius, atmosphere_top
+    return radius, Top(atmosphere_top, section.where("atmosphere_top_km"))
 
 
 def _read_star(top: Section) -> Star:
@@ -142,7 +145,10 @@ def _read_star(top: Section) -> Star:
     read.finish()
     star = Star(radius, distance * ASTRONOMICAL_UNIT, irradiance, u, v)
     if star.radius >= star.distance:
-        section.fail("radius_km", f"must be less than the distance, {star.distance:g} km")
+        other = section.where("distance_au")
+        section.fail(
+            "radius_km", f"must be less than the distance, {star.distance:g} km (see {other})"
+        )
     return star
 
 
@@ -154,7 +160,7 @@ def _read_ground(top: Section) -> Ground:
     return Ground(albedo)
 
 
-def _read_constituents(top: Section, atmosphere_top: float | None) -> tuple[Constituent, ...]:
+def _read_constituents(top: Section, highest: Top | None) -> tuple[Constituent, ...]:
     section = top.section("constituents")
     names = section.keys()
     if not 1 <= len(names) <= MAX_CONSTITUENTS:
@@ -163,10 +169,10 @@ def _read_constituents(top: Section, atmosphere_top: float | None) -> tuple[Cons
         if not NAME.fullmatch(name):
             section.fail("", f"names must be of letters, digits, _ and -, got {shown(name)}")
     read = Gather()
-    constituents = tuple(read(_read_one, section, name, atmosphere_top) for name in names)
+    constituents = tuple(read(_read_one, section, name, highest) for name in names)
     read.finish()
     return constituents
 
 
-def _read_one(section: Section, name: str, atmosphere_top: float | None) -> Constituent:
-    return read_constituent(name, section.section(name), atmosphere_top)
+def _read_one(section: Section, name: str, highest: Top | None) -> Constituent:
+    return read_constituent(name, section.section(name), highest)

@@ -43,9 +43,7 @@ class Section:
 
     def where(self, key: str = "") -> str:
         """Place of a key (or of this table) for a message: where it was written, and its name."""
-        path = self._path(key)
-        file = self._document.source(path).name
-        return f"{file}: {dotted(path)}" if path else file
+        return self._document.place(self._path(key))
 
     def fail(self, key: str, rule: str) -> NoReturn:
         """Raise the fault of a key."""
