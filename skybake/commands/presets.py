@@ -100,11 +100,12 @@ def new(name: str, base: str) -> None:
       skybake presets new dusk --from earth
       skybake render --preset dusk.toml
     """
-    from skybake.formats.partial import replace_when_whole
+    from skybake.formats.partial import check_target, replace_when_whole
     from skybake.preset import preset_template
 
     text = preset_template(name.removesuffix(".toml"), base)
     path = Path(f"{name.removesuffix('.toml')}.toml")
+    check_target(path)
     if path.exists():
         raise OutputError(f"{path}: must not be there yet")
     with replace_when_whole(path) as temporary:

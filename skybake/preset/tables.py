@@ -49,18 +49,22 @@ def load_table(name: str, where: str, source: Source, column: str) -> dict[str, 
         if source.is_file and Path(os.path.normpath(name)).parts[0] == os.pardir:
             raise PresetError(f"{where}: must lie in the preset's folder or be an absolute path")
         return _parse(where, read_text(source.folder / name, where))
-    paths = {path.stem: path for path in _DATA.glob("*.csv")}
-    if name not in paths:
-        known = ", ".join(sorted(k for k, path in paths.items() if column in _columns(path)))
+    if name not in {path.stem for path in _DATA.glob("*.csv")}:
+        columns = table_columns()
+        known = ", ".join(one for one in columns if column in columns[one])
         raise PresetError(
             f"{where}: unknown table {shown(name)}; tables with a column {column}: "
             f"{known or 'none'}; a file of your own needs the ending .csv"
         )
-    return _parse(where, read_text(paths[name], where))
+    return _parse(where, read_text(_DATA / f"{name}.csv", where))
 
 
-def _columns(path: Path) -> list[str]:
-    return _lines(path.read_text(encoding="utf-8"))[0].split(",")
+def table_columns() -> dict[str, list[str]]:
+    """Columns of the tables that come with skybake, by the tables' names, sorted."""
+    return {
+        path.stem: _lines(path.read_text(encoding="utf-8"))[0].split(",")
+        for path in sorted(_DATA.glob("*.csv"))
+    }
 
 
 def _lines(text: str) -> list[str]:
