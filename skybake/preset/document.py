@@ -94,6 +94,7 @@ class Document:
         PresetError
             If it takes away what is not there.
         """
+        self._check_depth(key, source)
         table = self.data
         for depth, name in enumerate(key[:-1], start=1):
             if not isinstance(table.get(name), dict):
@@ -157,14 +158,18 @@ class Document:
             del self._sources[known]
 
     def _mark(self, key: Key, value: Any, source: Source) -> None:
-        if len(key) > MAX_DEPTH:
-            raise PresetError(
-                f"{source.name}: {dotted(key[:2])}: tables must lie at most {MAX_DEPTH} deep"
-            )
+        self._check_depth(key, source)
         self._sources[key] = source
         if isinstance(value, dict):
             for name, inner in value.items():
                 self._mark((*key, name), inner, source)
+
+    @staticmethod
+    def _check_depth(key: Key, source: Source) -> None:
+        if len(key) > MAX_DEPTH:
+            raise PresetError(
+                f"{source.name}: {dotted(key[:2])}: tables must lie at most {MAX_DEPTH} deep"
+            )
 
 
 def _merges(name: str, old: dict[str, Any], new: dict[str, Any]) -> bool:

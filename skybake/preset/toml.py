@@ -37,8 +37,10 @@ def _lines(table: dict[str, Any], key: Key, line: Callable[[Key, str], str]) -> 
         for name, value in table.items()
         if name not in inner
     ]
-    heading = [f"[{'.'.join(map(_name, key))}]"] if key and lines else []
-    lines = [*heading, *lines, ""] if lines else []
+    if key and (lines or not table):
+        lines.insert(0, f"[{'.'.join(map(_name, key))}]")
+    if lines:
+        lines.append("")
     for name, value in table.items():
         if name in inner:
             lines += _lines(value, (*key, name), line)
