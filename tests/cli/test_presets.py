@@ -10,6 +10,7 @@ import pytest
 from skybake.preset import load_preset, preset_names
 from tests.cli.runs import SMALL, invoke, listing, run
 from tests.cli.test_faults import check_fault
+from tests.cli.test_help import COMMANDS
 
 
 def test_every_preset_is_sound():
@@ -62,6 +63,28 @@ def test_the_short_options_set_what_they_say():
 def test_visibility_and_turbidity_are_met(option, line):
     output = invoke("presets", "check", "earth", *option).stdout
     assert any(one.startswith(line) for one in output.splitlines())
+
+
+@pytest.mark.parametrize(("path", "command"), COMMANDS)
+def test_every_command_that_takes_a_preset_can_change_it(path, command):
+    names = {parameter.name for parameter in command.params}
+    takes = "preset" in names or path in {("presets", name) for name in ("show", "check", "plot")}
+    changes = {"changes", "visibility", "turbidity", "ozone", "ground_albedo"}
+    assert names & changes == (changes if takes else set())
+
+
+def test_a_probe_sees_the_changed_world(tmp_path):
+    (tmp_path / "up.csv").write_text("view_zenith_deg,relative_azimuth_deg\n0,0\n")
+    arguments = ("probe", "--method", "hillaire", "--wavelengths", "550", "--per-irradiance")
+    grey, snow = (
+        float(
+            invoke(*arguments, "--directions", tmp_path / "up.csv", "--ground-albedo", albedo)
+            .stdout.splitlines()[1]
+            .split(",")[2]
+        )
+        for albedo in ("0", "0.9")
+    )
+    assert 1.1 < snow / grey < 2.0
 
 
 def test_visibility_counts_on_what_was_set_before():
