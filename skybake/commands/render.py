@@ -140,7 +140,6 @@ def render(**options: Any) -> None:
 
     from skybake.baking import bake, companion, default_path
 
-
     planet = world.load_world(options["preset"], options)
     output = options["output"] or default_path(planet, settings)
     quiet = options["quiet"]
