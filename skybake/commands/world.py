@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import tomllib
+import warnings
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from skybake.commands import parameters
-from skybake.errors import InputError, PresetError
+from skybake.errors import InputError, PresetError, PresetWarning
 from skybake.units import parse_column
 
 if TYPE_CHECKING:
@@ -57,7 +58,10 @@ def world_overrides(preset: str, options: dict[str, Any]) -> list[Override]:
     ozone, haze = options["ozone"], _haze_option(options)
     if ozone is None and haze is None:
         return overrides
-    planet = load_preset(preset, overrides)
+    with warnings.catch_warnings():
+        # It is loaded once more for good, and shall warn then.
+        warnings.simplefilter("ignore", PresetWarning)
+        planet = load_preset(preset, overrides)
     if ozone is not None:
         absorbers = [one.name for one in planet.constituents if isinstance(one, Absorber)]
         if OZONE not in absorbers:

@@ -40,6 +40,24 @@ def test_check_tells_faults_that_only_the_optics_find():
     check_fault(result, 1, "earth: constituents.aerosol.profile: must be thicker than 0.2 km")
 
 
+def test_a_phase_table_that_is_normalised_is_noted_in_one_line(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("grains.csv").write_text("angle_deg,550\n0,0.08\n180,0.08\n", encoding="utf-8")
+    Path("own.toml").write_text(
+        'extends = "earth"\n'
+        'constituents.aerosol.phase = { kind = "tabulated", table = "grains.csv" }\n'
+    )
+    status, output, errors = run(
+        *("presets", "check", "own.toml", "--turbidity", "2"), cwd=tmp_path
+    )
+    assert status == 0
+    assert "turbidity: 2 at 550 nm" in output
+    assert errors == (
+        "skybake: warning: own.toml: constituents.aerosol.phase.table: integrates to 1.0053 over "
+        "the sphere at 550 nm and is normalised to 1\n"
+    )
+
+
 def test_check_tells_where_the_data_are_weak():
     result = invoke("presets", "check", "earth", "--set", "data_quality=Guessed, all of it.")
     assert result.stdout.splitlines()[-1] == "data quality: Guessed, all of it."
