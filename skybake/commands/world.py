@@ -50,19 +50,14 @@ def world_overrides(preset: str, options: dict[str, Any]) -> list[Override]:
     PresetError
         If the preset is faulty, or has nothing that an option could change.
     """
-    from skybake.preset import Absorber, Override, load_preset
+    from skybake.preset import Absorber, Override
 
     overrides = [Override(key, value, "--set") for key, value in options["changes"]]
     if options["ground_albedo"] is not None:
         overrides.append(Override("ground.albedo", options["ground_albedo"], "--ground-albedo"))
     ozone, haze = options["ozone"], _haze_option(options)
-    if ozone is None and haze is None:
-        return overrides
-    with warnings.catch_warnings():
-        # It is loaded once more for good, and shall warn then.
-        warnings.simplefilter("ignore", PresetWarning)
-        planet = load_preset(preset, overrides)
     if ozone is not None:
+        planet = _load_quietly(preset, overrides)
         absorbers = [one.name for one in planet.constituents if isinstance(one, Absorber)]
         if OZONE not in absorbers:
             raise PresetError(
@@ -72,11 +67,21 @@ def world_overrides(preset: str, options: dict[str, Any]) -> list[Override]:
         overrides.append(Override(f"constituents.{OZONE}.column_du", ozone, "--ozone"))
     if haze is not None:
         name, value = haze
+        planet = _load_quietly(preset, overrides)
         overrides += [
             Override(f"constituents.{aerosol}.optical_depth", depth, name)
             for aerosol, depth in _optical_depths(planet, name, value).items()
         ]
     return overrides
+
+
+def _load_quietly(preset: str, overrides: list[Override]) -> Planet:
+    """Load a planet that is loaded once more for good, and shall warn then."""
+    from skybake.preset import load_preset
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PresetWarning)
+        return load_preset(preset, overrides)
 
 
 def is_changed(options: dict[str, Any]) -> bool:
