@@ -200,16 +200,16 @@ def test_a_new_world_never_takes_a_place_nor_a_faulty_base(
     assert Path("own.toml").read_text("utf-8") == "mine"
 
 
-def test_every_preset_is_drawn(tmp_path):
-    for name in preset_names():
-        path = tmp_path / f"{name}.png"
-        result = invoke("presets", "plot", name, "-o", path)
-        assert (result.exit_code, result.stdout) == (0, f"{path}\n")
-        picture = OpenImageIO.ImageBuf(str(path))
-        assert (picture.spec().width, picture.spec().height) == (1560, 528)
-        stats = OpenImageIO.ImageBufAlgo.computePixelStats(picture)
-        assert min(stats.avg[:3]) > 0.8
-        assert max(stats.stddev[:3]) > 0.05
+@pytest.mark.parametrize("name", ["earth", "mars", "earth-hillaire2020"])
+def test_a_preset_is_drawn(tmp_path, name):
+    path = tmp_path / f"{name}.png"
+    result = invoke("presets", "plot", name, "-o", path)
+    assert (result.exit_code, result.stdout) == (0, f"{path}\n")
+    picture = OpenImageIO.ImageBuf(str(path))
+    assert (picture.spec().width, picture.spec().height) == (1560, 528)
+    stats = OpenImageIO.ImageBufAlgo.computePixelStats(picture)
+    assert min(stats.avg[:3]) > 0.8
+    assert max(stats.stddev[:3]) > 0.05
 
 
 WITHOUT = """

@@ -92,7 +92,8 @@ def test_the_later_of_two_keys_that_exclude_each_other_holds():
     spectrum = "opac_continental_average"
     both = {"aerosol.angstrom_exponent": 1.4, "aerosol.relative_extinction": spectrum}
     aerosol = load_preset("earth", both).constituents[2]
-    assert aerosol.extinction_spectrum.values[0] == 1.63654
+    original = load_preset("earth").constituents[2]
+    assert aerosol.extinction_spectrum.values == original.extinction_spectrum.values
 
 
 def test_none_takes_away_a_constituent_or_a_key(tmp_path):
