@@ -12,7 +12,28 @@ class SkybakeError(Exception):
 
 
 class PresetError(SkybakeError, ValueError):
-    """A preset cannot be found, read, or breaks a rule of physics or grammar."""
+    """A preset cannot be found, read, or breaks a rule of physics or grammar.
+
+    Parameters
+    ----------
+    *faults : str
+        All that is wrong, a line each; the error's own message is the first of them.
+
+    Attributes
+    ----------
+    faults : tuple of str
+        The same.
+    """
+
+    def __init__(self, *faults: str) -> None:
+        more = len(faults) - 1
+        hint = f" (and {more} more, see 'skybake presets check')" if more > 0 else ""
+        super().__init__(f"{faults[0]}{hint}")
+        self.faults = faults
+
+
+class PresetWarning(UserWarning):
+    """A preset is usable, but not quite as it was written."""
 
 
 class OutputError(SkybakeError, OSError):

@@ -60,6 +60,27 @@ def parse_length(text: str) -> float:
     return _parse(text, _KILOMETRES, bare="m", quantity="a length", example="2km")
 
 
+def parse_column(text: str) -> float:
+    """Read a column of gas such as ``320DU`` or ``320``.
+
+    Parameters
+    ----------
+    text : str
+        A number and the unit DU; a bare number is in Dobson units.
+
+    Returns
+    -------
+    float
+        The column. [DU]
+
+    Raises
+    ------
+    InputError
+        If the text is no finite number with this unit.
+    """
+    return _parse(text, {"DU": 1.0}, bare="DU", quantity="a column of gas", example="320DU")
+
+
 def _parse(text: str, units: dict[str, float], *, bare: str, quantity: str, example: str) -> float:
     match = _QUANTITY.fullmatch(text.strip())
     unit = match[2] or bare if match else ""

@@ -136,9 +136,7 @@ def bake(
         "skybake:directIlluminance": horizontal,
         "skybake:skyIlluminance": sky_illuminance,
         "skybake:preset": planet.name,
-        "skybake:recipe": json.dumps(
-            {"map": settings.recipe(), "preset": planet.recipe}, sort_keys=True
-        ),
+        "skybake:recipe": json.dumps({"map": settings.recipe(), "preset": planet.recipe}),
     }
     panels = dict(zip(paths, _panels(scene), strict=True))
     pixel = _pixel(scene, settings, max(panel.peak for panel in panels.values()))

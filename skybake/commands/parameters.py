@@ -44,12 +44,17 @@ def bearing(text: str) -> float:
     return _parse(text, parse_angle)
 
 
+def length(text: str) -> float:
+    """Read a length. [km]"""
+    return _parse(text, parse_length)
+
+
 def altitude(text: str) -> float:
     """Read a length of at least 0. [km]"""
-    length = _parse(text, parse_length)
-    if length < 0.0:
+    above = length(text)
+    if above < 0.0:
         raise click.BadParameter(f"must be at least 0m, which is the ground, got {text}")
-    return length
+    return above
 
 
 def size(text: str) -> tuple[int, ...]:

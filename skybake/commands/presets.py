@@ -1,40 +1,144 @@
-"""``skybake presets``: what worlds there are."""
+"""``skybake presets``: what worlds there are, and making one's own."""
 
 from __future__ import annotations
 
-import tomllib
+from pathlib import Path
+from typing import Any
 
 import click
+
+from skybake.commands.parameters import with_suffix
+from skybake.commands.world import change_options, is_changed, load_world, world_overrides
+from skybake.errors import InputError, OutputError, PresetError
 
 
 @click.group()
 def presets() -> None:
-    """List the worlds that come with skybake, or show one as TOML."""
+    """List the worlds that come with skybake, show, check or draw one, or start your own."""
 
 
 @presets.command("list")
 def list_() -> None:
     """List the presets, one a line: name and title."""
-    from skybake.preset import preset_names, preset_text
+    from skybake.preset import load_document, preset_names
 
     names = preset_names()
     width = max(map(len, names))
     for name in names:
-        title = tomllib.loads(preset_text(name))["title"]
-        click.echo(f"{name:{width}}  {title}")
+        click.echo(f"{name:{width}}  {load_document(name).data['title']}")
+
+
+@presets.command()
+@click.argument("name", metavar="NAME|PATH")
+@click.option(
+    "--resolved", is_flag=True, help="Print it with what it extends, and where each key is from."
+)
+@change_options
+def show(name: str, resolved: bool, **options: Any) -> None:
+    """Print the preset NAME as TOML, with the source of every value.
+
+    With --resolved, or with a change, what it extends is merged into it.
+
+    \b
+    Examples:
+      skybake presets show mars
+      skybake presets show mars --resolved --set dust.optical_depth=2
+    """
+    from skybake.preset import preset_text, resolved_text
+
+    if resolved or is_changed(options):
+        click.echo(resolved_text(name, world_overrides(name, options)), nl=False)
+    else:
+        click.echo(preset_text(name), nl=False)
+
+
+@presets.command()
+@click.argument("name", metavar="NAME|PATH")
+@change_options
+def check(name: str, **options: Any) -> None:
+    """Tell every fault of a preset, or figures that follow from it.
+
+    Each fault is a line with the file and the key; the exit status is then 1. Otherwise it prints
+    optical depths, single scattering albedos, columns, visibility and the light of the sun.
+
+    \b
+    Examples:
+      skybake presets check earth
+      skybake presets check own.toml
+      skybake presets check earth --visibility 5km
+    """
+    try:
+        planet = load_world(name, options)
+
+        from skybake.baking.figures import derive_figures, figures_text
+
+        figures = derive_figures(planet)
+    except PresetError as error:
+        for fault in error.faults:
+            click.echo(f"skybake: {' '.join(fault.split())}", err=True)
+        raise click.exceptions.Exit(1) from error
+    click.echo(figures_text(planet, figures))
 
 
 @presets.command()
 @click.argument("name")
-def show(name: str) -> None:
-    """Print the preset NAME as TOML, with the source of every value.
+@click.option(
+    "--from",
+    "base",
+    metavar="NAME|PATH",
+    default="earth",
+    show_default=True,
+    help="Preset that it extends.",
+)
+def new(name: str, base: str) -> None:
+    """Write NAME.toml, a world of your own that extends a preset.
 
-    Start a world of your own from it:
+    All that can be changed stands in it as remarks. A file that is there already is kept.
 
     \b
-      skybake presets show mars > dusty.toml
-      skybake render --preset dusty.toml
+    Examples:
+      skybake presets new dusk --from earth
+      skybake render --preset dusk.toml
     """
-    from skybake.preset import preset_text
+    from skybake.formats.partial import check_target, replace_when_whole
+    from skybake.preset import preset_template
 
-    click.echo(preset_text(name), nl=False)
+    text = preset_template(name.removesuffix(".toml"), base)
+    path = Path(f"{name.removesuffix('.toml')}.toml")
+    check_target(path)
+    if path.exists():
+        raise OutputError(f"{path}: must not be there yet")
+    with replace_when_whole(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+    click.echo(path)
+
+
+@presets.command()
+@click.argument("name", metavar="NAME|PATH")
+@click.option(
+    *("-o", "--output"),
+    metavar="FILE.png",
+    type=click.Path(path_type=Path),
+    callback=with_suffix(".png", ".svg"),
+    show_default="NAME.png",
+    help="Picture to write, .png or .svg.",
+)
+@change_options
+def plot(name: str, output: Path | None, **options: Any) -> None:
+    """Draw the coefficients, profiles and phase functions of a preset.
+
+    Needs matplotlib: pip install 'skybake[plot]'.
+
+    \b
+    Examples:
+      skybake presets plot mars
+      skybake presets plot earth --set aerosol.optical_depth=0.3 -o haze.png
+    """
+    planet = load_world(name, options)
+    try:
+        from skybake.baking.plot import plot_planet
+    except ImportError as error:
+        raise InputError("plot: needs matplotlib, as from pip install 'skybake[plot]'") from error
+    output = output or Path(f"{planet.name}.png")
+    plot_planet(planet, output)
+    click.echo(output)

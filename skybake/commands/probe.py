@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from skybake.commands import parameters
+from skybake.commands import parameters, world
 from skybake.errors import InputError
 
 
@@ -23,7 +23,7 @@ def _wavelengths(text: str) -> tuple[float, ...]:
 
 
 @click.command()
-@parameters.preset_option
+@world.world_options
 @parameters.sun_option
 @parameters.altitude_option
 @click.option(
@@ -83,9 +83,8 @@ def probe(**options: Any) -> None:
 
     from skybake.baking.probe import default_directions, probe, read_directions
     from skybake.formats.partial import replace_when_whole
-    from skybake.preset import load_preset
 
-    planet = load_preset(options["preset"])
+    planet = world.load_world(options["preset"], options)
     source: Path | None = options["directions"]
     if source is None:
         directions = default_directions(options["sun_elevation"])

@@ -8,11 +8,11 @@ from typing import Any
 
 import click
 
-from skybake.commands import parameters, report, request
+from skybake.commands import parameters, report, request, world
 
 
 @click.command()
-@parameters.preset_option
+@world.world_options
 @parameters.sun_option
 @click.option(
     "--sun-azimuth",
@@ -139,9 +139,8 @@ def render(**options: Any) -> None:
     settings = request.map_settings(options)
 
     from skybake.baking import bake, companion, default_path
-    from skybake.preset import load_preset
 
-    planet = load_preset(options["preset"])
+    planet = world.load_world(options["preset"], options)
     output = options["output"] or default_path(planet, settings)
     quiet = options["quiet"]
     if not quiet:

@@ -110,6 +110,14 @@ def build_medium(planet: Planet, wavelengths: Array, bandwidth: float = BANDWIDT
     )
 
 
+def vertical_optical_depth(medium: Medium) -> Array:
+    """Optical depth of each constituent from the ground to the top, (constituent, wavelength)."""
+    altitude = altitude_nodes(medium.r_bottom, medium.r_top)
+    columns = np.asarray(np.trapezoid(medium.density, altitude, axis=0))
+    optical_depth: Array = columns[:, None] * medium.extinction
+    return optical_depth
+
+
 def pad_wavelengths(medium: Medium) -> Medium:
     """Repeat the last wavelength until their number is a multiple of `LANES`."""
     last = medium.ground_albedo.size - 1

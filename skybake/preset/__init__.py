@@ -1,5 +1,6 @@
 """Planets from TOML: where presets live, what they may say, and every check on it."""
 
+from skybake.preset.extend import Override, Overrides, load_document
 from skybake.preset.find import preset_names, preset_text
 from skybake.preset.load import load_preset
 from skybake.preset.model import (
@@ -23,6 +24,7 @@ from skybake.preset.model import (
     TabulatedProfile,
     TentProfile,
 )
+from skybake.preset.template import preset_template, resolved_text
 
 __all__ = [
     "Absorber",
@@ -35,6 +37,8 @@ __all__ = [
     "Gas",
     "Ground",
     "HenyeyGreensteinPhase",
+    "Override",
+    "Overrides",
     "Phase",
     "Planet",
     "Profile",
@@ -44,7 +48,10 @@ __all__ = [
     "TabulatedPhase",
     "TabulatedProfile",
     "TentProfile",
+    "load_document",
     "load_preset",
     "preset_names",
+    "preset_template",
     "preset_text",
+    "resolved_text",
 ]

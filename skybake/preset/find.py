@@ -42,7 +42,7 @@ def find_preset(name_or_path: str | Path) -> Path:
     """
     if isinstance(name_or_path, Path):
         return name_or_path
-    if name_or_path.endswith(".toml") or "/" in name_or_path or "\\" in name_or_path:
+    if is_path(name_or_path):
         return Path(name_or_path)
     names = preset_names()
     if name_or_path not in names:
@@ -51,6 +51,11 @@ def find_preset(name_or_path: str | Path) -> Path:
             "a file of your own needs the ending .toml"
         )
     return _folder() / f"{name_or_path}.toml"
+
+
+def is_path(text: str) -> bool:
+    """Whether a text means a file of the user's rather than the name of a preset."""
+    return text.endswith(".toml") or "/" in text or "\\" in text
 
 
 def display_name(path: Path) -> str:

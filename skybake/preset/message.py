@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from difflib import get_close_matches
 from typing import Any
 
 MAX_SHOWN = 60
@@ -15,3 +17,8 @@ def shown(value: Any) -> str:
     except ValueError:  # Python refuses to print an integer of more than 4300 digits.
         return "an integer of thousands of digits"
     return text if len(text) <= MAX_SHOWN else f"{text[:MAX_SHOWN]}..."
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """Known words that look like a word, the likest first; empty if none does."""
+    return ", ".join(get_close_matches(word, list(known), n=3, cutoff=0.6))

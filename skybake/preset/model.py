@@ -247,8 +247,11 @@ class Planet:
     constituents : tuple of Constituent
         In the preset's order.
     recipe : dict
-        The preset as read, fit for JSON: enough to make the planet again, given
-        the user's own tables, whose SHA-256 is under ``"files"``.
+        The preset as read, with what it extends and what was set, fit for JSON:
+        enough to make the planet again, given the user's own tables, whose SHA-256
+        is under ``"files"``. What was set is repeated under ``"set"``.
+    data_quality : str or None
+        Where the data are weak, for people; None if nothing needs to be said.
     """
 
     name: str
@@ -261,3 +264,4 @@ class Planet:
     ground: Ground
     constituents: tuple[Constituent, ...]
     recipe: dict[str, Any] = field(compare=False)
+    data_quality: str | None = None

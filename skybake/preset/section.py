@@ -1,56 +1,60 @@
-"""A table of a TOML document, read key by key with every fault named by its place."""
+"""A table of a preset, read key by key with every fault named by its place."""
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Any, NoReturn
+from collections.abc import Callable
+from itertools import pairwise
+from typing import Any, NoReturn, ParamSpec, TypeVar, cast
 
 from skybake.errors import PresetError
-from skybake.preset.message import shown
+from skybake.preset.document import Document, Key, dotted
+from skybake.preset.message import nearest, shown
 from skybake.preset.model import Spectrum
 from skybake.preset.tables import load_table
 
 MISSING: Any = object()
 """Default of a key that must be given."""
 
+Parameters = ParamSpec("Parameters")
+Result = TypeVar("Result")
+
 
 class Section:
-    """One TOML table and the keys that were asked of it.
+    """One table of a preset and the keys that were asked of it.
 
     Parameters
     ----------
-    file : str
-        How messages call the preset.
-    path : str
-        Dotted keys down to this table, empty for the document.
-    data : dict
-        The table as parsed.
-    folder : Path
-        What paths to the user's tables are relative to.
+    document : Document
+        The whole preset.
+    key : tuple of str
+        Names down to this table, empty for the document.
+    cover : tuple of float, optional
+        Least and greatest wavelength that spectra must cover. [nm]
     """
 
-    def __init__(self, file: str, path: str, data: dict[str, Any], folder: Path) -> None:
-        self._file = file
-        self._path = path
-        self._data = data
+    def __init__(
+        self, document: Document, key: Key = (), cover: tuple[float, float] | None = None
+    ) -> None:
+        self._document = document
+        self._key = key
+        self._data = document.table(key)
         self._asked: list[str] = []
-        self.folder = folder
+        self.cover = cover
 
     def where(self, key: str = "") -> str:
-        """Place of a key (or of this table) for a message."""
-        path = self._dotted(key)
-        return f"{self._file}: {path}" if path else self._file
+        """Place of a key (or of this table) for a message: where it was written, and its name."""
+        return self._document.place(self._path(key))
 
     def fail(self, key: str, rule: str) -> NoReturn:
         """Raise the fault of a key."""
         raise PresetError(f"{self.where(key)}: {rule}")
 
     def keys(self) -> list[str]:
-        """Keys that the user gave."""
+        """Keys that are given."""
         return list(self._data)
 
     def has(self, key: str) -> bool:
-        """Whether the user gave the key; it counts as known from now on."""
+        """Whether the key is given; it counts as known from now on."""
         self._asked.append(key)
         return key in self._data
 
@@ -67,7 +71,7 @@ class Section:
         value = self.raw(key)
         if not isinstance(value, dict):
             self.fail(key, f"must be a table, got {shown(value)}")
-        return Section(self._file, self._dotted(key), value, self.folder)
+        return Section(self._document, self._path(key), self.cover)
 
     def text(self, key: str, default: Any = MISSING) -> str:
         """One line of text."""
@@ -99,11 +103,11 @@ class Section:
     def spectrum(
         self, key: str, least: float, most: float, default: float | None = None
     ) -> Spectrum:
-        """Spectrum: a number, a table or ``{ wavelength_nm = [...], values = [...] }``.
+        """Spectrum: a number, an array, a table or ``{ wavelength_nm = [...], values = [...] }``.
 
-        A string names a table of skybake or a CSV file beside the preset; its
-        column ``wavelength_nm`` holds the nodes and the column named as the
-        key the values.
+        An array has its nodes in the key ``wavelength_nm`` beside it. A string names a
+        table of skybake or a CSV file beside the preset; its column ``wavelength_nm``
+        holds the nodes and the column named as the key the values.
         """
         value = self.raw(key, MISSING if default is None else default)
         if isinstance(value, dict):
@@ -113,17 +117,26 @@ class Section:
             if len(nodes) != len(values):
                 inner.fail("values", f"must have {len(nodes)} numbers, got {len(values)}")
             inner.finish()
-            return self._ordered(key, nodes, values)
+            return self._covering(key, nodes, values)
+        if isinstance(value, list):
+            nodes = self.numbers("wavelength_nm", 1.0, 1e6)
+            values = self.numbers(key, least, most)
+            if len(nodes) != len(values):
+                self.fail(
+                    key, f"must have {len(nodes)} numbers like wavelength_nm, got {len(values)}"
+                )
+            return self._covering(key, nodes, values)
         if isinstance(value, str):
             nodes, values = self.columns(key, "wavelength_nm", key)
             for one in values:
                 self._number(key, one, least, most)
-            return self._ordered(key, nodes, values)
+            return self._covering(key, nodes, values)
         return Spectrum(self.where(key), (), (self._number(key, value, least, most),))
 
     def table(self, key: str, column: str) -> dict[str, tuple[float, ...]]:
         """Columns of the table that the key names: one of skybake, or a user's CSV file."""
-        return load_table(self.text(key), self.where(key), self.folder, column)
+        name = self.text(key)
+        return load_table(name, self.where(key), self._document.source(self._path(key)), column)
 
     def columns(self, key: str, first: str, second: str) -> list[tuple[float, ...]]:
         """Two columns of the table that the key names."""
@@ -136,15 +149,36 @@ class Section:
             )
         return [table[first], table[second]]
 
+    def check_cover(self, key: str, nodes: tuple[float, ...]) -> None:
+        """Refuse nodes [nm] that do not ascend or do not reach as far as the rendering."""
+        for before, after in pairwise(nodes):
+            if not before < after:
+                self.fail(key, f"wavelengths must ascend, got {after:g} nm after {before:g} nm")
+        if self.cover and not nodes[0] <= self.cover[0] <= self.cover[1] <= nodes[-1]:
+            self.fail(
+                key,
+                f"must cover {self.cover[0]:g} to {self.cover[1]:g} nm, "
+                f"got {nodes[0]:g} to {nodes[-1]:g} nm",
+            )
+
     def finish(self) -> None:
         """Refuse keys that nobody asked for."""
+        known = sorted(set(self._asked))
+        faults = []
         for key in self._data:
-            if key not in self._asked:
-                known = sorted(set(self._asked))
-                self.fail("", f"unknown key {shown(key)}; known keys: {', '.join(known)}")
+            if key not in known:
+                like = nearest(key, known)
+                hint = f", nearest: {like}" if like else ""
+                file = self._document.source(self._path(key)).name
+                where = ": ".join(filter(None, (file, dotted(self._key))))
+                faults.append(
+                    f"{where}: unknown key {shown(key)}{hint}; known keys: {', '.join(known)}"
+                )
+        if faults:
+            raise PresetError(*faults)
 
-    def _dotted(self, key: str) -> str:
-        return ".".join(part for part in (self._path, key) if part)
+    def _path(self, key: str) -> Key:
+        return (*self._key, key) if key else self._key
 
     def _number(self, key: str, value: Any, least: float, most: float) -> float:
         # bool is an int to Python, but `optical_depth = true` is a slip.
@@ -157,10 +191,40 @@ class Section:
             self.fail(key, f"must be at most {most:g}, got {shown(value)}")
         return float(value)
 
-    def _ordered(self, key: str, nodes: tuple[float, ...], values: tuple[float, ...]) -> Spectrum:
-        if len(set(nodes)) < len(nodes):
-            self.fail(key, "wavelengths must differ from each other")
-        pairs = sorted(zip(nodes, values, strict=True))
-        return Spectrum(
-            self.where(key), tuple(node for node, _ in pairs), tuple(value for _, value in pairs)
-        )
+    def _covering(self, key: str, nodes: tuple[float, ...], values: tuple[float, ...]) -> Spectrum:
+        self.check_cover(key, nodes)
+        return Spectrum(self.where(key), nodes, values)
+
+
+class Gather:
+    """Calls readers one after another and keeps their faults, so that all are told at once.
+
+    Parameters
+    ----------
+    *sections : Section
+        Tables that are read, whose unknown keys are faults too.
+    """
+
+    def __init__(self, *sections: Section) -> None:
+        self._sections = sections
+        self._faults: list[str] = []
+
+    def __call__(
+        self,
+        read: Callable[Parameters, Result],
+        *args: Parameters.args,
+        **kwargs: Parameters.kwargs,
+    ) -> Result:
+        """Return what the reader returns; what a faulty one leaves is never used."""
+        try:
+            return read(*args, **kwargs)
+        except PresetError as error:
+            self._faults += error.faults
+            return cast(Result, None)
+
+    def finish(self) -> None:
+        """Raise all faults as one error."""
+        for section in self._sections:
+            self(section.finish)
+        if self._faults:
+            raise PresetError(*self._faults)

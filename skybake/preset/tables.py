@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+import os
 from pathlib import Path
 
 from skybake.errors import PresetError
+from skybake.preset.document import Source
 from skybake.preset.find import read_text
 from skybake.preset.message import shown
 
@@ -17,7 +19,7 @@ def is_user_file(name: str) -> bool:
     return name.endswith(".csv") or "/" in name or "\\" in name
 
 
-def load_table(name: str, where: str, folder: Path, column: str) -> dict[str, tuple[float, ...]]:
+def load_table(name: str, where: str, source: Source, column: str) -> dict[str, tuple[float, ...]]:
     """Read a table.
 
     Parameters
@@ -26,8 +28,9 @@ def load_table(name: str, where: str, folder: Path, column: str) -> dict[str, tu
         Name of a table that comes with skybake, or a CSV file of the user's.
     where : str
         Where the preset names it, for messages.
-    folder : Path
-        What the user's paths are relative to: the preset's folder.
+    source : Source
+        What the user's paths are relative to; out of a file's folder leads only an
+        absolute path, so that a preset from elsewhere stays within what came with it.
     column : str
         A column that it needs, to tell which tables of skybake would do.
 
@@ -43,19 +46,25 @@ def load_table(name: str, where: str, folder: Path, column: str) -> dict[str, tu
     """
     if is_user_file(name):
         where = f"{where}: {shown(name)}"
-        return _parse(where, read_text(folder / name, where))
-    paths = {path.stem: path for path in _DATA.glob("*.csv")}
-    if name not in paths:
-        known = ", ".join(sorted(k for k, path in paths.items() if column in _columns(path)))
+        if source.is_file and Path(os.path.normpath(name)).parts[0] == os.pardir:
+            raise PresetError(f"{where}: must lie in the preset's folder or be an absolute path")
+        return _parse(where, read_text(source.folder / name, where))
+    if name not in {path.stem for path in _DATA.glob("*.csv")}:
+        columns = table_columns()
+        known = ", ".join(one for one in columns if column in columns[one])
         raise PresetError(
             f"{where}: unknown table {shown(name)}; tables with a column {column}: "
             f"{known or 'none'}; a file of your own needs the ending .csv"
         )
-    return _parse(where, read_text(paths[name], where))
+    return _parse(where, read_text(_DATA / f"{name}.csv", where))
 
 
-def _columns(path: Path) -> list[str]:
-    return _lines(path.read_text(encoding="utf-8"))[0].split(",")
+def table_columns() -> dict[str, list[str]]:
+    """Columns of the tables that come with skybake, by the tables' names, sorted."""
+    return {
+        path.stem: _lines(path.read_text(encoding="utf-8"))[0].split(",")
+        for path in sorted(_DATA.glob("*.csv"))
+    }
 
 
 def _lines(text: str) -> list[str]:

@@ -87,7 +87,7 @@ def test_a_cube_in_one_exr_is_no_radiance_picture(tmp_path, monkeypatch):
     [
         (("rendr",), "No such command 'rendr'."),
         (("presets", "shw"), "No such command 'shw'."),
-        (("presets", "show"), "Missing argument 'NAME'."),
+        (("presets", "show"), "Missing argument 'NAME|PATH'."),
         (("preview",), "Missing argument 'IN'."),
         (("preview", "a.exr", "-o", "a.jpg"), "a.jpg: suffix must be .png, got '.jpg'"),
         (("preview", "a.exr", "--ev", "x"), "must be auto or a number from -30 to 40, got 'x'"),

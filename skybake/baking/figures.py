@@ -1,0 +1,165 @@
+"""Figures of a planet by which a physicist judges whether it is as it was meant."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from skybake.colour.observer import xyz_weights
+from skybake.constants import BOLTZMANN, DOBSON_UNIT
+from skybake.errors import PresetError
+from skybake.optics.haze import HAZE_WAVELENGTH, turbidity, visibility
+from skybake.optics.medium import Array, altitude_nodes, build_medium, vertical_optical_depth
+from skybake.optics.spectrum import limb_darkening, star_irradiance, star_spectrum
+from skybake.preset import Absorber, Gas, Planet
+from skybake.sky.sky import WAVELENGTHS
+
+FIGURE_WAVELENGTHS = (450.0, 550.0, 650.0)
+"""Where optical depths are told. [nm]"""
+
+
+@dataclass(frozen=True)
+class ConstituentFigures:
+    """What one constituent, or all together, does to light on the vertical.
+
+    Attributes
+    ----------
+    name : str
+        Of the constituent, or "total".
+    optical_depth, single_scattering_albedo : ndarray of float64, shape (wavelength,)
+        From the ground to the top; the mean weighted by extinction, NaN where there is none.
+    column : float or None
+        Molecules over the ground of a gas or an absorber. [m⁻²]
+    """
+
+    name: str
+    optical_depth: Array
+    single_scattering_albedo: Array
+    column: float | None = None
+
+
+@dataclass(frozen=True)
+class Figures:
+    """Derived figures of a planet.
+
+    Attributes
+    ----------
+    wavelengths : ndarray of float64, shape (wavelength,)
+        `FIGURE_WAVELENGTHS`, as far as the preset reaches. [nm]
+    constituents : tuple of ConstituentFigures
+        In the preset's order, the total last.
+    ground_albedo : ndarray of float64, shape (wavelength,)
+        In [0, 1].
+    visibility, turbidity : float or None
+        As of `skybake.optics.haze`; None if there is none. [km], 1
+    sun_illuminance : float
+        Above the atmosphere, facing the star. [lx]
+    sun_angular_diameter : float
+        Of its disc. [rad]
+    """
+
+    wavelengths: Array
+    constituents: tuple[ConstituentFigures, ...]
+    ground_albedo: Array
+    visibility: float | None
+    turbidity: float | None
+    sun_illuminance: float
+    sun_angular_diameter: float
+
+
+def derive_figures(planet: Planet) -> Figures:
+    """Derive the figures of a planet, whose optics are thereby checked as for a rendering.
+
+    Raises
+    ------
+    PresetError
+        If it cannot be rendered.
+    """
+    _try_all(planet)
+    own = planet.wavelengths or tuple(WAVELENGTHS)
+    wavelengths = np.unique(np.clip(FIGURE_WAVELENGTHS, min(own), max(own)))
+    medium = build_medium(planet, wavelengths)
+    depth = vertical_optical_depth(medium)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        albedo = medium.scattering / medium.extinction
+        total_albedo = (np.nan_to_num(albedo) * depth).sum(axis=0) / depth.sum(axis=0)
+    altitude = altitude_nodes(medium.r_bottom, medium.r_top)
+    columns = np.asarray(np.trapezoid(medium.density, altitude, axis=0))
+    rows = [
+        ConstituentFigures(one.name, depth[i], albedo[i], _column(one, float(columns[i])))
+        for i, one in enumerate(planet.constituents)
+    ]
+    rows.append(ConstituentFigures("total", depth.sum(axis=0), total_albedo))
+    sees_haze = min(own) <= HAZE_WAVELENGTH <= max(own)
+    return Figures(
+        wavelengths=wavelengths,
+        constituents=tuple(rows),
+        ground_albedo=medium.ground_albedo,
+        visibility=visibility(planet) if sees_haze else None,
+        turbidity=turbidity(planet) if sees_haze else None,
+        sun_illuminance=float(xyz_weights(WAVELENGTHS, *star_spectrum(planet.star))[:, 1].sum()),
+        sun_angular_diameter=2.0 * planet.star.angular_radius,
+    )
+
+
+def _try_all(planet: Planet) -> None:
+    """Sample everything as a rendering does."""
+    wavelengths = np.array(planet.wavelengths or WAVELENGTHS, dtype=float)
+    arrays = [
+        *build_medium(planet, wavelengths)[2:],
+        star_irradiance(planet.star, wavelengths),
+        limb_darkening(planet.star, wavelengths),
+    ]
+    if not all(np.isfinite(array).all() for array in arrays):
+        raise PresetError(f"{planet.name}: optics must be finite numbers")
+
+
+def _column(constituent: object, length: float) -> float | None:
+    """Molecules over the ground [m⁻²]; `length` is the column of relative density [km]."""
+    if isinstance(constituent, Gas):
+        return constituent.pressure / (BOLTZMANN * constituent.temperature) * length * 1e3
+    return constituent.column if isinstance(constituent, Absorber) else None
+
+
+def figures_text(planet: Planet, figures: Figures) -> str:
+    """Figures for people, in lines."""
+    width = max(len(one.name) for one in figures.constituents)
+    band = "".join(f"{wavelength:>9g}" for wavelength in figures.wavelengths)
+    gap = " " * max(0, len(band) - len("optical depth") - 2)
+    lines = [
+        f"{planet.name}: {planet.title}",
+        "",
+        f"{'':{width}}  optical depth{gap}   single scattering albedo",
+        f"{'nm':{width}}{band}  {band}",
+    ]
+    for one in figures.constituents:
+        depth = "".join(f"{value:>9.4g}" for value in one.optical_depth)
+        albedo = "".join(
+            f"{'-' if math.isnan(value) else f'{value:.4f}':>9}"
+            for value in one.single_scattering_albedo
+        )
+        lines.append(f"{one.name:{width}}{depth}  {albedo}")
+    lines.append("")
+    lines += [
+        f"column of {one.name}: {one.column:.4g} molecules/m2, {one.column / DOBSON_UNIT:.4g} DU"
+        for one in figures.constituents
+        if one.column is not None
+    ]
+    if figures.visibility is not None:
+        lines.append(f"visibility: {figures.visibility:.4g} km at the ground, 550 nm")
+    if figures.turbidity is not None:
+        lines.append(f"turbidity: {figures.turbidity:.4g} at 550 nm")
+    albedo = ", ".join(
+        f"{value:.4g} at {wavelength:g} nm"
+        for value, wavelength in zip(figures.ground_albedo, figures.wavelengths, strict=True)
+    )
+    lines += [
+        f"ground albedo: {albedo}",
+        f"sun above the atmosphere: {figures.sun_illuminance:.4g} lx",
+        f"sun's disc: {math.degrees(figures.sun_angular_diameter):.4g}deg across",
+    ]
+    if planet.data_quality:
+        lines.append(f"data quality: {' '.join(planet.data_quality.split())}")
+    return "\n".join(lines)

@@ -1,0 +1,153 @@
+"""Presets that extend others, and values that are laid over them."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from skybake.errors import PresetError
+from skybake.preset.document import Document, Key, Source, dotted
+from skybake.preset.find import display_name, find_preset, is_path, read_text
+from skybake.preset.message import nearest, shown
+
+TOP_KEYS = (
+    "title",
+    "data_quality",
+    "rendering",
+    "wavelengths_nm",
+    "planet",
+    "star",
+    "ground",
+    "constituents",
+)
+"""What a preset may say at its top, apart from what it extends."""
+
+NAME = re.compile(r"[A-Za-z0-9_-]+")
+"""Names of constituents, which fit into dotted keys."""
+
+
+@dataclass(frozen=True, slots=True)
+class Override:
+    """A value to lay over a preset.
+
+    Attributes
+    ----------
+    key : str
+        Dotted; a constituent's may leave out the prefix ``constituents.``.
+    value : Any
+        As parsed from TOML; "none" takes the key away.
+    source : str
+        Where it was written, for messages.
+    """
+
+    key: str
+    value: Any
+    source: str = "overrides"
+
+
+Overrides = Mapping[str, Any] | Iterable[Override]
+"""Values to lay over a preset, by their dotted keys or with where they were written."""
+
+
+def load_document(name_or_path: str | Path, overrides: Overrides = ()) -> Document:
+    """Read a preset with all that it extends, and lay values over it.
+
+    Parameters
+    ----------
+    name_or_path : str or Path
+        As of `load_preset`.
+    overrides : mapping of str to Any, or iterable of Override
+        In the order in which they are laid.
+
+    Returns
+    -------
+    Document
+        Not checked yet, but for its form as TOML.
+
+    Raises
+    ------
+    PresetError
+        If a file cannot be read, extends itself, or a key of the overrides is unknown.
+    """
+    document = Document()
+    for path, table in reversed(_chain(find_preset(name_or_path))):
+        document.lay(table, Source(display_name(path), path.parent))
+    for override in _listed(overrides):
+        source = Source(override.source, Path(), is_file=False)
+        document.set(_full_key(document, override), override.value, source)
+    return document
+
+
+def _listed(overrides: Overrides) -> list[Override]:
+    if isinstance(overrides, Mapping):
+        return [Override(key, value) for key, value in overrides.items()]
+    return list(overrides)
+
+
+def _chain(path: Path) -> list[tuple[Path, dict[str, Any]]]:
+    """Return a preset and what it extends, each the base of the one before."""
+    chain: list[tuple[Path, dict[str, Any]]] = []
+    where = display_name(path)
+    while True:
+        table = _parse(path, where)
+        chain.append((path, table))
+        if "extends" not in table:
+            return chain
+        where = f"{display_name(path)}: extends"
+        path = _base(path, where, table.pop("extends"))
+        visited = [known for known, _ in chain]
+        if path.resolve() in [known.resolve() for known in visited]:
+            names = " -> ".join(display_name(one) for one in [*visited, path])
+            raise PresetError(f"{where}: must not lead back to a preset before it, got {names}")
+
+
+def _base(path: Path, where: str, base: Any) -> Path:
+    if not isinstance(base, str):
+        raise PresetError(f"{where}: must be a preset's name or a file, got {shown(base)}")
+    if is_path(base):
+        file = path.parent / base
+        read_text(file, f"{where}: {shown(base)}")
+        return file
+    try:
+        return find_preset(base)
+    except PresetError as error:
+        raise PresetError(f"{where}: {error}") from error
+
+
+def _parse(path: Path, where: str) -> dict[str, Any]:
+    text = read_text(path, where)
+    file = display_name(path)
+    try:
+        return tomllib.loads(text)
+    # A ValueError that is no TOMLDecodeError comes from an integer of thousands of digits.
+    except (ValueError, RecursionError) as error:
+        raise PresetError(f"{file}: not valid TOML: {error}") from error
+
+
+def _full_key(document: Document, override: Override) -> Key:
+    """Key of an override from the top."""
+    key = tuple(override.key.split("."))
+    constituents = document.data.get("constituents")
+    names = constituents if isinstance(constituents, dict) else {}
+    if key[0] in names and key[0] not in TOP_KEYS:
+        key = ("constituents", *key)
+    if all(map(NAME.fullmatch, key)) and _leads_somewhere(key, names):
+        return key
+    keys = [dotted(key).removeprefix("constituents.") for key, _ in document.leaves()]
+    like = nearest(override.key.removeprefix("constituents."), [*names, *TOP_KEYS, *keys])
+    heads = ", ".join((*names, *(name for name in TOP_KEYS if name != "constituents")))
+    raise PresetError(
+        f"{override.source}: {shown(override.key)}: unknown key; "
+        + (f"nearest: {like}" if like else f"keys start with: {heads}")
+    )
+
+
+def _leads_somewhere(key: Key, names: Iterable[str]) -> bool:
+    """Whether a key's table is there; below that its reader knows better."""
+    if key[0] != "constituents" or len(key) <= 2:
+        return key[0] in TOP_KEYS
+    return key[1] in names or key[2:] == ("kind",)

@@ -1,0 +1,43 @@
+"""What a preset says in the end, as data that make the same planet again."""
+
+from __future__ import annotations
+
+from copy import deepcopy
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+from skybake.preset.document import Document
+from skybake.preset.tables import is_user_file
+
+_TEXTS = ("title", "data_quality")
+
+
+def recipe_of(document: Document, folder: Path) -> dict[str, Any]:
+    """Return the recipe of a checked preset, see `Planet.recipe`.
+
+    Parameters
+    ----------
+    document : Document
+        The preset as it is in the end.
+    folder : Path
+        The preset's own. Paths that were relative to another one become absolute.
+    """
+    recipe = deepcopy(document.data)
+    digests = {}
+    for key, value in document.leaves():
+        if key[-1] in _TEXTS or not isinstance(value, str) or not is_user_file(value):
+            continue
+        home = document.source(key).folder
+        file = home / value
+        name = value if home.resolve() == folder.resolve() else str(file.resolve())
+        table = recipe
+        for part in key[:-1]:
+            table = table[part]
+        table[key[-1]] = name
+        digests[name] = sha256(file.read_bytes()).hexdigest()
+    if digests:
+        recipe["files"] = digests
+    if document.changes:
+        recipe["set"] = dict(document.changes)
+    return recipe

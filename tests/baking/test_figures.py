@@ -1,0 +1,83 @@
+"""Figures of a planet, against what is published of it."""
+
+import math
+
+import numpy as np
+import pytest
+
+from skybake.baking.figures import derive_figures, figures_text
+from skybake.errors import PresetError
+from skybake.preset import load_preset, preset_names
+
+
+def constituents(figures):
+    return {one.name: one for one in figures.constituents}
+
+
+@pytest.fixture(scope="module")
+def earth():
+    return derive_figures(load_preset("earth"))
+
+
+def test_the_sun_above_the_atmosphere_has_133_kilolux_and_half_a_degree(earth):
+    """133.1 klx, ASTM E490 and G173; 959.63 arcsec at 1 au, Auwers (1891)."""
+    assert earth.sun_illuminance == pytest.approx(133.1e3, rel=5e-3)
+    assert math.degrees(earth.sun_angular_diameter) == pytest.approx(2 * 959.63 / 3600, rel=1e-3)
+
+
+def test_the_optical_depth_of_air_is_that_of_bodhaine(earth):
+    """Bodhaine et al. (1999), table 3 at sea level: 0.2218 at 450, 0.0972 at 550, 0.0493 at 650."""
+    depth = constituents(earth)["air"].optical_depth
+    np.testing.assert_allclose(depth, [0.2218, 0.0972, 0.0493], rtol=5e-3)
+
+
+def test_columns_are_those_of_the_preset_and_of_hydrostatic_air(earth):
+    """A pressure of 1013.25 hPa is 2.15e29 molecules of 28.96 g/mol over each square metre."""
+    columns = {name: one.column for name, one in constituents(earth).items()}
+    assert columns["ozone"] == pytest.approx(300 * 2.6868e20, rel=1e-4)
+    assert columns["air"] == pytest.approx(101325 / 9.80665 / 28.9644e-3 * 6.02214e23, rel=5e-3)
+    assert columns["aerosol"] is None
+
+
+def test_the_total_is_the_sum_and_its_albedo_the_mean_by_extinction(earth):
+    *parts, total = earth.constituents
+    depths = np.stack([one.optical_depth for one in parts])
+    albedos = np.stack([one.single_scattering_albedo for one in parts])
+    np.testing.assert_allclose(total.optical_depth, depths.sum(axis=0), rtol=1e-12)
+    expected = (depths * albedos).sum(axis=0) / depths.sum(axis=0)
+    np.testing.assert_allclose(total.single_scattering_albedo, expected, rtol=1e-12)
+
+
+def test_an_empty_constituent_has_no_albedo_and_is_told_without_nan():
+    planet = load_preset("earth", {"aerosol.optical_depth": 0, "ozone.column_du": 0})
+    figures = derive_figures(planet)
+    assert np.isnan(constituents(figures)["ozone"].single_scattering_albedo).all()
+    np.testing.assert_array_equal(figures.constituents[-1].single_scattering_albedo, 1.0)
+    text = figures_text(planet, figures)
+    assert "nan" not in text
+    assert len(text.splitlines()) == 16
+
+
+def test_wavelengths_stay_within_those_of_the_preset():
+    narrow = {"wavelengths_nm": [600, 500, 470]}
+    figures = derive_figures(load_preset("earth", narrow))
+    assert figures.wavelengths.tolist() == [470.0, 550.0, 600.0]
+    figures = derive_figures(load_preset("earth", {"wavelengths_nm": [600, 590, 580]}))
+    assert figures.wavelengths.tolist() == [580.0, 600.0]
+    assert figures.visibility is None
+
+
+def test_what_no_table_of_altitudes_resolves_is_refused():
+    thin = {"aerosol.profile": {"kind": "tent", "center_km": 90.05, "half_width_km": 0.001}}
+    with pytest.raises(PresetError, match=r"aerosol\.profile: must be thicker than 0\.2 km"):
+        derive_figures(load_preset("earth", thin))
+
+
+@pytest.mark.parametrize("name", preset_names())
+def test_the_figures_of_every_preset_are_told_in_lines_of_numbers(name):
+    planet = load_preset(name)
+    text = figures_text(planet, derive_figures(planet))
+    assert text.startswith(f"{name}: {planet.title}\n")
+    assert "nan" not in text
+    assert "inf" not in text.lower().replace("infra", "")
+    assert all(len(line) <= 100 or line.startswith("data quality") for line in text.splitlines())
