@@ -151,11 +151,8 @@ def fill_directions(view, zenith, azimuth, height, first, last, out):
     is_mirrored = False
     for i in range(first, last):
         if i == first or not shares_azimuth:
-            for j in range(columns):
-                phi = azimuth[0 if shares_azimuth else i, j]
-                angle[j] = abs(phi - 2.0 * math.pi * math.floor(phi / (2.0 * math.pi) + 0.5))
-                cosine[j] = math.cos(angle[j])
-            is_mirrored = shares_zenith and _is_mirrored(angle)
+            mirrors = _fill_angles(azimuth[0 if shares_azimuth else i], angle, cosine)
+            is_mirrored = shares_zenith and mirrors
         computed = (columns + 1) // 2 if is_mirrored else columns
         along_squared = sines = 0.0
         for j in range(computed):
@@ -187,18 +184,28 @@ def fill_directions(view, zenith, azimuth, height, first, last, out):
                     _add_pixel(
                         latitude[side], row[side, j], weights[side, j], share[side], curves, pixel
                     )
-        for j in range(computed, columns):
-            for k in range(3):
-                out[i - first, j, k] = out[i - first, columns - 1 - j, k]
+        _mirror(out[i - first], computed)
 
 
 @inner_kernel
-def _is_mirrored(angle):
-    """Whether the right half of a row sees the left half's angles from the sun, in reverse."""
+def _fill_angles(azimuth, angle, cosine):
+    """Angles from the sun's azimuth, 0 to pi; whether they are the same from right to left."""
+    for j in range(angle.size):
+        phi = azimuth[j]
+        angle[j] = abs(phi - 2.0 * math.pi * math.floor(phi / (2.0 * math.pi) + 0.5))
+        cosine[j] = math.cos(angle[j])
+    difference = 0.0
     for j in range(angle.size // 2):
-        if abs(angle[j] - angle[angle.size - 1 - j]) > 1e-12:
-            return False
-    return True
+        difference = max(difference, abs(angle[j] - angle[angle.size - 1 - j]))
+    return difference < 1e-12
+
+
+@inner_kernel
+def _mirror(pixels, computed):
+    """Copy the first pixels of a row to the others, in reverse."""
+    for j in range(computed, pixels.shape[0]):
+        for k in range(3):
+            pixels[j, k] = pixels[pixels.shape[0] - 1 - j, k]
 
 
 @inner_kernel
