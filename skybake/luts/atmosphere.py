@@ -1,14 +1,16 @@
 """All tables of an atmosphere: what depends neither on the observer nor on the sun.
 
 They are built once and kept on disk as plain arrays, named by everything that
-they depend on.
+they depend on. A file is a SHA-256 digest of the rest, then arrays in numpy's own
+format: their names, and each of them.
 """
 
 from __future__ import annotations
 
 import hashlib
 import os
-import zipfile
+from contextlib import suppress
+from io import BytesIO
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -28,6 +30,8 @@ from skybake.transport.shells import altitude_shells
 
 LARGEST_STORE = 1 << 30
 """Size beyond which the tables unused for longest are removed. [byte]"""
+
+_DIGEST_SIZE = hashlib.sha256().digest_size
 
 
 class Atmosphere(NamedTuple):
@@ -81,20 +85,17 @@ def build_atmosphere(medium: Medium, method: str) -> Atmosphere:
 def load_atmosphere(medium: Medium, method: str) -> Atmosphere:
     """Return the tables of a medium from disk, or build and keep them.
 
-    A file that is missing, cut short or damaged is made anew; where none can be
-    written the tables are built every time.
+    A file that is missing or not, bit by bit, what was once written is made anew;
+    where none can be written the tables are built every time.
     """
     path = _path(medium, method)
     if path is None:
         return build_atmosphere(medium, method)
-    try:
-        with np.load(path, allow_pickle=False) as arrays:
-            atmosphere = _from_arrays(medium, dict(arrays))
-        # The time of last use decides what goes first when the folder is full.
-        os.utime(path)
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
-        atmosphere = build_atmosphere(medium, method)
-        _store(path, atmosphere)
+    arrays = _read(path)
+    if arrays is not None:
+        return _from_arrays(medium, arrays)
+    atmosphere = build_atmosphere(medium, method)
+    _store(path, atmosphere)
     return atmosphere
 
 
@@ -112,7 +113,7 @@ def _path(medium: Medium, method: str) -> Path | None:
     digest = hashlib.sha256(f"{method} {medium.r_bottom!r} {medium.r_top!r}".encode())
     for array in medium[2:]:
         digest.update(f"{array.shape}".encode() + np.ascontiguousarray(array).tobytes())
-    return directory / "atmospheres" / f"{digest.hexdigest()[:32]}.npz"
+    return directory / "atmospheres" / f"{digest.hexdigest()[:32]}.tables"
 
 
 def _to_arrays(atmosphere: Atmosphere) -> dict[str, Any]:
@@ -158,21 +159,53 @@ def _from_arrays(medium: Medium, arrays: dict[str, Any]) -> Atmosphere:
     return Atmosphere(cut, arrays["shells"], arrays["columns"], field, lobes)
 
 
+def _read(path: Path) -> dict[str, Any] | None:
+    """Return the arrays of a file, or None if it is missing or not as it was written.
+
+    The digest is checked before anything else is read: damaged arrays can fail in
+    any way, or only look right.
+    """
+    try:
+        whole = path.read_bytes()
+    except OSError:
+        return None
+    if _digest(memoryview(whole)[_DIGEST_SIZE:]) != whole[:_DIGEST_SIZE]:
+        return None
+    # The time of last use decides what goes first when the folder is full.
+    with suppress(OSError):
+        os.utime(path)
+    stream = BytesIO(whole)
+    stream.seek(_DIGEST_SIZE)
+    names = np.load(stream, allow_pickle=False)
+    return {str(name): np.load(stream, allow_pickle=False) for name in names}
+
+
 def _store(path: Path, atmosphere: Atmosphere) -> None:
     """Write tables beside their name and rename them; a full disk only costs the reuse."""
-    temporary = path.with_name(f".{path.stem}-{os.getpid()}.npz")
-    try:
+    arrays = _to_arrays(atmosphere)
+    stream = BytesIO()
+    for array in (np.array(list(arrays)), *arrays.values()):
+        np.save(stream, array, allow_pickle=False)
+    temporary = path.with_name(f".{path.stem}-{os.getpid()}{path.suffix}")
+    with suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
-        np.savez(temporary, allow_pickle=False, **_to_arrays(atmosphere))
-        temporary.replace(path)
+        try:
+            with temporary.open("wb") as file:
+                file.write(_digest(stream.getbuffer()))
+                file.write(stream.getbuffer())
+            temporary.replace(path)
+        finally:
+            temporary.unlink(missing_ok=True)
         _remove_oldest(path.parent)
-    except OSError:
-        temporary.unlink(missing_ok=True)
+
+
+def _digest(content: memoryview) -> bytes:
+    return hashlib.sha256(content).digest()
 
 
 def _remove_oldest(folder: Path) -> None:
     """Keep the folder below `LARGEST_STORE`."""
-    files = sorted(folder.glob("*.npz"), key=lambda file: file.stat().st_mtime, reverse=True)
+    files = sorted(folder.glob("*.tables"), key=lambda file: file.stat().st_mtime, reverse=True)
     total = 0
     for file in files:
         total += file.stat().st_size

@@ -57,12 +57,27 @@ def _compile_later(function: Callable[..., Any], **extra: bool) -> Any:
     config.CACHE_DIR = str(directory)
     try:
         dispatcher: Any = numba.njit(cache=True, **options)(function)
+    except RuntimeError:
+        # numba found no room for the folder that it keeps for each of ours.
+        _warn_of_full_disk(directory)
+        return numba.njit(**options)(function)
     finally:
         config.CACHE_DIR = previous
     stored = dispatcher._cache
+    stored.save_overload = functools.partial(_save_compiled, directory, stored.save_overload)
     if hasattr(stored, "_load_overload"):
         stored.load_overload = functools.partial(_load_compiled, stored, function.__name__)
     return dispatcher
+
+
+def _save_compiled(
+    directory: Path, save: Callable[[Any, Any], None], signature: Any, compiled: Any
+) -> None:
+    """Keep a compiled kernel on disk; where that fails it serves this process only."""
+    try:
+        save(signature, compiled)
+    except OSError:
+        _warn_of_full_disk(directory)
 
 
 def _load_compiled(stored: Any, name: str, signature: Any, target_context: Any) -> Any:
@@ -138,22 +153,30 @@ def cache_directory() -> Path | None:
     folder.
     """
     configured = os.environ.get("SKYBAKE_CACHE_DIR") or os.environ.get("NUMBA_CACHE_DIR")
-    directory = Path(configured) if configured else _user_cache() / "skybake"
-    directory = directory / f"kernels-{_source_hash()}"
+    parent = Path(configured) if configured else _user_cache()
+    if parent is None:
+        _warn_of_no_cache("SKYBAKE_CACHE_DIR: kernel cache must be given without a home folder")
+        return None
+    directory = parent / f"kernels-{_source_hash()}"
     try:
         directory.mkdir(parents=True, exist_ok=True)
-    except (OSError, RuntimeError):
+    except OSError:
         writable = False
     else:
-        writable = os.access(directory, os.W_OK)
+        writable = os.access(directory, os.W_OK | os.X_OK)
     if not writable:
-        warnings.warn(
-            f"{directory}: kernel cache must be writable; compiling anew in every process",
-            RuntimeWarning,
-            stacklevel=2,
-        )
+        _warn_of_no_cache(f"{directory}: kernel cache must be writable")
         return None
     return directory
+
+
+@functools.cache
+def _warn_of_full_disk(directory: Path) -> None:
+    _warn_of_no_cache(f"{directory}: kernel cache must have room")
+
+
+def _warn_of_no_cache(fault: str) -> None:
+    warnings.warn(f"{fault}; compiling anew in every process", RuntimeWarning, stacklevel=3)
 
 
 def is_warm() -> bool:
@@ -211,7 +234,14 @@ def _source_hash() -> str:
     return digest.hexdigest()[:16]
 
 
-def _user_cache() -> Path:
-    if xdg := os.environ.get("XDG_CACHE_HOME"):
-        return Path(xdg)
-    return Path.home() / ".cache"
+def _user_cache() -> Path | None:
+    """Folder for this program's files by the platform's convention; None without a home."""
+    configured = os.environ.get("LOCALAPPDATA" if sys.platform == "win32" else "XDG_CACHE_HOME")
+    if configured:
+        return Path(configured) / "skybake"
+    try:
+        home = Path.home()
+    except RuntimeError:
+        return None
+    within = {"win32": "AppData/Local", "darwin": "Library/Caches"}.get(sys.platform, ".cache")
+    return home / within / "skybake"

@@ -1,6 +1,7 @@
 """Tables on disk."""
 
-import errno
+import io
+import resource
 import time
 
 import numpy as np
@@ -45,17 +46,71 @@ def test_stored_tables_are_not_built_again(folder, monkeypatch):
     store.load_atmosphere(MEDIUM, "hillaire")
 
 
-# numpy does not close a file that it cannot read.
-@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
-@pytest.mark.filterwarnings("ignore::ResourceWarning")
-@pytest.mark.parametrize("damage", [b"", b"PK\x03\x04 not a zip", None])
-def test_a_damaged_file_is_made_anew(folder, damage):
+def half(whole):
+    return whole[: len(whole) // 2]
+
+
+def with_another_bit(whole):
+    """In the middle, which is within an array."""
+    middle = len(whole) // 2
+    return whole[:middle] + bytes([whole[middle] ^ 1]) + whole[middle + 1 :]
+
+
+def with_another_array(whole, name, change):
+    """The digest stays."""
+    source, target = io.BytesIO(whole), io.BytesIO()
+    target.write(source.read(32))
+    names = np.load(source)
+    np.save(target, names)
+    for key in names:
+        array = np.load(source)
+        np.save(target, change(array) if key == name else array)
+    return target.getvalue()
+
+
+def with_nan(whole):
+    return with_another_array(whole, "radiance", lambda array: np.full_like(array, np.nan))
+
+
+def with_another_shape(whole):
+    return with_another_array(whole, "columns", lambda array: array[:, :-1])
+
+
+DAMAGES = [
+    lambda whole: b"",
+    lambda whole: b"not tables",
+    half,
+    with_another_bit,
+    with_nan,
+    with_another_shape,
+]
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_a_file_that_is_not_what_was_written_is_made_anew(folder, damage):
     built = store.load_atmosphere(MEDIUM, "hillaire")
     (path,) = folder.iterdir()
     whole = path.read_bytes()
-    path.write_bytes(whole[: len(whole) // 2] if damage is None else damage)
+    path.write_bytes(damage(whole))
     assert_same(store.load_atmosphere(MEDIUM, "hillaire"), built)
-    assert path.stat().st_size == len(whole)
+    assert path.read_bytes() == whole
+
+
+def test_a_file_in_place_of_the_folder_only_costs_the_reuse(folder):
+    folder.write_text("not a folder")
+    first, second = (store.load_atmosphere(MEDIUM, "hillaire") for _ in range(2))
+    assert_same(first, second)
+    assert not store.is_stored(MEDIUM, "hillaire")
+    assert folder.read_text() == "not a folder"
+
+
+def test_a_folder_in_place_of_a_file_only_costs_the_reuse(folder):
+    built = store.load_atmosphere(MEDIUM, "hillaire")
+    (path,) = folder.iterdir()
+    path.unlink()
+    path.mkdir()
+    assert_same(store.load_atmosphere(MEDIUM, "hillaire"), built)
+    assert list(folder.iterdir()) == [path]
 
 
 @pytest.mark.parametrize(
@@ -73,14 +128,16 @@ def test_another_medium_has_tables_of_its_own(folder, other):
     assert not store.is_stored(MEDIUM, "full")
 
 
-def test_a_full_disk_only_costs_the_reuse(folder, monkeypatch):
-    def savez(path, **arrays):
-        path.write_bytes(b"half")
-        raise OSError(errno.ENOSPC, "No space left on device")
-
-    monkeypatch.setattr(np, "savez", savez)
-    assert store.load_atmosphere(MEDIUM, "hillaire").columns.shape[2] == 1
+def test_a_full_disk_only_costs_the_reuse(folder):
+    """Files beyond a limit cannot grow, as on a full disk."""
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (5000, limits[1]))
+    try:
+        built = store.load_atmosphere(MEDIUM, "hillaire")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
     assert list(folder.iterdir()) == []
+    assert_same(store.load_atmosphere(MEDIUM, "hillaire"), built)
 
 
 def test_the_tables_used_least_recently_go_first(folder, monkeypatch):
