@@ -27,7 +27,7 @@ from skybake.preset.model import (
 )
 from skybake.preset.section import Section
 
-GASES = ("dry_air", "co2", "n2", "ar")
+GASES = ("dry_air", "co2", "n2", "ar", "ch4", "h2", "he")
 """Gases whose refractive index skybake knows."""
 
 PROFILES = ("exponential", "tent", "tabulated")
