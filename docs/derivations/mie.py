@@ -92,7 +92,7 @@ def write_phase(name, header, angles, phases):
         header,
         ["angle_deg", *(f"{w:.0f}" for w in WAVELENGTHS)],
         [
-            (f"{angle:g}", *(f"{value:.4g}" for value in row))
+            (f"{angle:g}", *(f"{value:.5g}" for value in row))
             for angle, row in zip(angles, np.transpose(phases), strict=True)
         ],
     )
