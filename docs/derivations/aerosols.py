@@ -186,14 +186,15 @@ def main(names):
         origin = [
             "Spheres of 75 % sulphuric acid, refractive index as OPAC's; one lognormal mode of",
             "effective radius 0.5 um, geometric deviation 1.5, as in the year after Pinatubo",
-            "(Russell et al. 1996, J. Geophys. Res. 101, 18745; Deshler et al. 1993, GRL 20, 1435).",
+            "(Russell et al. 1996, J. Geophys. Res. 101, 18745; Deshler et al. 1993, Geophys. Res.",
+            "Lett. 20, 1435).",
             SCRIPT,
         ]
         write_tables("volcanic", "Volcanic stratospheric aerosol", origin, volcanic())
     if not names or "venus" in names:
         origin = [
-            "Spheres of Hansen & Hovenier (1974), J. Atmos. Sci. 31, 1137; single scattering albedo",
-            "of Titov et al. (2018), Space Sci. Rev. 214, 126.",
+            "Spheres of Hansen & Hovenier (1974), J. Atmos. Sci. 31, 1137; single scattering",
+            "albedo of Titov et al. (2018), Space Sci. Rev. 214, 126, below 445 nm a guess.",
             SCRIPT,
         ]
         write_tables("venus_cloud", "Cloud tops of Venus", origin, venus())

@@ -84,8 +84,9 @@ def main():
         "snow.csv",
         [
             "Albedo of deep, clean snow under diffuse light, grains of 0.3 mm.",
-            "Kokhanovsky & Zege (2004), Appl. Opt. 43, 1589, with ice of Warren & Brandt (2008), J. Geophys.",
-            "Res. 113, D14220; 1.5 % less for impurities, as Grenfell et al. (1994), J. Geophys. Res. 99, 18669.",
+            "Kokhanovsky & Zege (2004), Appl. Opt. 43, 1589, with ice of Warren & Brandt (2008),",
+            "J. Geophys. Res. 113, D14220; 1.5 % less for impurities, as Grenfell et al. (1994),",
+            "J. Geophys. Res. 99, 18669.",
             script,
         ],
         columns,
@@ -99,8 +100,8 @@ def main():
     write(
         "ocean.csv",
         [
-            "Albedo of the open ocean under diffuse light, 0.1 mg chlorophyll per m3, calm surface.",
-            "Morel (1988), J. Geophys. Res. 93, 10749; surface 6.6 %, Burt (1954), J. Meteor. 11, 283.",
+            "Albedo of the open ocean under diffuse light, 0.1 mg chlorophyll per m3, calm.",
+            "Morel (1988), J. Geophys. Res. 93, 10749; surface 6.6 %, Burt (1954), J. Meteor. 11.",
             "Held below 400 nm, that of the surface beyond 750 nm.",
             script,
         ],

@@ -74,7 +74,7 @@ def chromaticity(xyz):
 
 
 def test_sunlight_above_the_air_is_133_1_klx_within_half_a_percent():
-    """Integral of ASTM G173-03 with CIE 1931; E490 has 133.3, Darula et al. (2005) 133.1 to 133.8."""
+    """ASTM G173-03 by CIE 1931; E490 has 133.3, Darula et al. (2005) 133.1 to 133.8."""
     total = scene("air, ozone", 60.0).xyz_weights[:, 1].sum()
     assert total == pytest.approx(133.1e3, rel=0.005)
 
@@ -160,7 +160,7 @@ MARS = {
     [pytest.param(*case, marks=() if case[0] in {0.5, 2.0} else pytest.mark.slow) for case in MARS],
 )
 def test_days_of_mars_are_as_bright_as_by_discrete_ordinates(depth, elevation):
-    """Grains of ours scatter more to the back than spheres; low suns shine through a curved layer."""
+    """Grains of ours scatter more to the back than spheres, and their layer is curved."""
     diffuse, direct = MARS[depth, elevation]
     made = scene(f"mars {depth}", elevation)
     assert made.sky_illuminance() == pytest.approx(diffuse, rel=0.1)
@@ -210,7 +210,7 @@ def test_day_sky_of_mars_is_butterscotch():
 
 
 def test_aureole_of_mars_is_bluer_than_the_sun_and_then_than_the_rest_of_the_sky():
-    """Bluer than the sun within about 5 deg, than the sky to 10 to 12 deg: forward lobes of 1.5 um."""
+    """The former within about 5 deg, the latter to 10 to 12 deg: lobes of grains of 1.5 um."""
     assert all(redness(30.0 - angle, 0.0) < 1.0 for angle in (1.0, 2.0, 4.0))
     assert all(redness(30.0 - angle, 0.0) > 1.0 for angle in (6.5, 8.0))
     rest = min(redness(30.0 - angle, 0.0) for angle in range(14, 30))

@@ -193,7 +193,7 @@ def test_a_broken_rule_is_named_in_one_line_with_its_place(tmp_path, old, new, m
         (
             "co2 = 1.0",
             "xenon = 1",
-            "composition: unknown key 'xenon'; known keys: ar, co2, dry_air, n2",
+            "composition: unknown key 'xenon'; known keys: ar, ch4, co2, dry_air, h2, he, n2",
         ),
         ("210.0", "0", "temperature_k: must be at least 1, got 0"),
         ("610.0", "-1", "pressure_pa: must be at least 0, got -1"),
