@@ -103,4 +103,35 @@ def _argon(wavelengths: Array) -> tuple[Array, Array]:
     return 1e-8 * (6432.135 + 286.06021e12 / (14.4e9 - nu2)), np.ones(len(wavelengths))
 
 
-_GASES = {"dry_air": _dry_air, "co2": _carbon_dioxide, "n2": _nitrogen, "ar": _argon}
+def _methane(wavelengths: Array) -> tuple[Array, Array]:
+    """He et al. (2021); a tetrahedron has no anisotropy."""
+    nu2 = (1e7 / wavelengths) ** 2  # cm⁻²
+    return 1e-8 * (3603.09 + 4.40362e14 / (1.1741e10 - nu2)), np.ones(len(wavelengths))
+
+
+def _hydrogen(wavelengths: Array) -> tuple[Array, Array]:
+    """Peck & Huang (1977), at 0 deg C; anisotropy of Bridge & Buckingham (1966), 632.8 nm."""
+    inverse_square = (1e-3 * wavelengths) ** -2.0  # um⁻²
+    at_freezing = 1e-6 * (14895.6 / (180.7 - inverse_square) + 4903.7 / (92.0 - inverse_square))
+    return at_freezing * _FROM_FREEZING, np.full(len(wavelengths), 1.0324)
+
+
+def _helium(wavelengths: Array) -> tuple[Array, Array]:
+    """Mansfield & Peck (1969), at 0 deg C; a noble gas has no anisotropy."""
+    inverse_square = (1e-3 * wavelengths) ** -2.0  # um⁻²
+    at_freezing = 0.01470091 / (423.98 - inverse_square)
+    return at_freezing * _FROM_FREEZING, np.ones(len(wavelengths))
+
+
+_FROM_FREEZING = 273.15 / 288.15
+"""Refractivity at 0 deg C to that at the standard number density, of 15 deg C."""
+
+_GASES = {
+    "dry_air": _dry_air,
+    "co2": _carbon_dioxide,
+    "n2": _nitrogen,
+    "ar": _argon,
+    "ch4": _methane,
+    "h2": _hydrogen,
+    "he": _helium,
+}

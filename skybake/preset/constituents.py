@@ -25,7 +25,7 @@ from skybake.preset.model import (
 from skybake.preset.phases import read_phase
 from skybake.preset.section import Gather, Section
 
-GASES = ("dry_air", "co2", "n2", "ar")
+GASES = ("dry_air", "co2", "n2", "ar", "ch4", "h2", "he")
 """Gases whose refractive index skybake knows."""
 
 PROFILES = ("exponential", "tent", "tabulated")

@@ -41,12 +41,20 @@ def test_a_king_factor_of_1_048_is_a_depolarisation_of_0_0279():
 
 @pytest.mark.parametrize(
     ("name", "cross_section"),
-    [("n2", 4.63e-31), ("co2", 1.164e-30), ("ar", 3.99e-31)],
+    [("n2", 4.63e-31), ("co2", 1.164e-30), ("ar", 3.99e-31), ("ch4", 9.91e-31)],
 )
 def test_gases_have_the_cross_sections_of_he_2021_at_550_nm(name, cross_section):
     scattering, _ = gas_scattering(gas({name: 1.0}), np.array([550.0]))
     density = STANDARD[0] / (1.380649e-23 * STANDARD[1])
     assert scattering[0] / (density * 1e3) == pytest.approx(cross_section, rel=2e-3)
+
+
+@pytest.mark.parametrize(("name", "cross_section"), [("h2", 1.005e-31), ("he", 6.41e-33)])
+def test_light_gases_have_the_cross_sections_of_vardavas_and_carver_at_550_nm(name, cross_section):
+    # Vardavas & Carver (1984), fits to older refractive indices: good to a few percent.
+    scattering, _ = gas_scattering(gas({name: 1.0}), np.array([550.0]))
+    density = STANDARD[0] / (1.380649e-23 * STANDARD[1])
+    assert scattering[0] / (density * 1e3) == pytest.approx(cross_section, rel=0.06)
 
 
 def test_the_gas_of_mars_scatters_fifty_times_less_than_air():

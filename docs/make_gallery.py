@@ -1,0 +1,76 @@
+"""Makes the gallery of all presets: ``python docs/make_gallery.py``, in some minutes.
+
+One equirect map a world and sun elevation, each exposed by itself and shown through ACES 2.0.
+Needs Pillow.
+"""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from pathlib import Path
+
+from PIL import Image, ImageDraw, ImageFont
+
+import skybake
+from skybake.preset import load_preset, preset_names
+
+ELEVATIONS = (60.0, 20.0, 5.0, 0.0, -4.0, -8.0)
+TILE = (512, 256)
+GAP = 6
+HEADER = 44
+LINE = 34
+FONT_SIZE = 22
+PAPER, INK = (255, 255, 255), (40, 40, 40)
+WIDTH, SMALL_WIDTH = 1600, 900
+COLOURS, SMALL_COLOURS = 256, 192
+IMAGES = Path(__file__).parent / "images"
+
+
+def main() -> None:
+    """Bake the maps, paste their previews into a sheet and write it in two sizes."""
+    names = preset_names()
+    columns = len(ELEVATIONS)
+    size = (
+        columns * (TILE[0] + GAP) + GAP,
+        HEADER + len(names) * (TILE[1] + LINE + GAP),
+    )
+    sheet = Image.new("RGB", size, PAPER)
+    draw = ImageDraw.Draw(sheet)
+    font = ImageFont.load_default(FONT_SIZE)
+    for column, elevation in enumerate(ELEVATIONS):
+        draw.text((_left(column), 10), f"sun at {elevation:g} deg", INK, font)
+    with tempfile.TemporaryDirectory() as folder:
+        for row, name in enumerate(names):
+            top = HEADER + row * (TILE[1] + LINE + GAP)
+            draw.text((GAP, top), f"{name}   {load_preset(name).title}", INK, font)
+            for column, elevation in enumerate(ELEVATIONS):
+                picture = _bake(name, elevation, Path(folder))
+                with Image.open(picture) as tile:
+                    sheet.paste(tile.convert("RGB"), (_left(column), top + LINE))
+            print(name, flush=True)
+    _write(sheet, "gallery.png", WIDTH, COLOURS)
+    _write(sheet, "gallery-small.png", SMALL_WIDTH, SMALL_COLOURS)
+
+
+def _left(column: int) -> int:
+    return GAP + column * (TILE[0] + GAP)
+
+
+def _bake(name: str, elevation: float, folder: Path) -> Path:
+    picture = folder / f"{name}{elevation:+g}.png"
+    settings = skybake.MapSettings(math.radians(elevation), width=TILE[0])
+    skybake.bake(name, picture.with_suffix(".exr"), settings, preview=picture)
+    return picture
+
+
+def _write(sheet: Image.Image, name: str, width: int, colours: int) -> None:
+    """Reduce the sheet to a width and a palette of its own, which keeps it small."""
+    height = round(sheet.height * width / sheet.width)
+    reduced = sheet.resize((width, height), Image.Resampling.LANCZOS)
+    indexed = reduced.quantize(colours, dither=Image.Dither.FLOYDSTEINBERG)
+    indexed.save(IMAGES / name, optimize=True)
+
+
+if __name__ == "__main__":
+    main()
