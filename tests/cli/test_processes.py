@@ -8,7 +8,6 @@ import time
 
 import pytest
 
-from skybake.preset import preset_names
 from tests.cli.runs import PACKAGES, SMALL, listing, run, start
 
 
@@ -129,7 +128,7 @@ main()
 @pytest.mark.usefixtures("warm")
 def test_a_render_needs_neither_colour_science_nor_scipy(tmp_path):
     """numba looks for scipy by itself, so that its absence from sys.modules can't be asked for."""
-    for preset in preset_names():
+    for preset in ("earth", "mars", "earth-hillaire2020"):
         arguments = (*SMALL, "--preset", preset, "--preview")
         bare = render(tmp_path / "bare.exr", *arguments, code=BARE)
         assert bare == render(tmp_path / "full.exr", *arguments)
