@@ -12,6 +12,12 @@ from skybake.colour.exposure import auto_ev, luminance_from_ev
 from skybake.colour.space import ColourSpace, colour_space_from_tags, luminance_weights
 from skybake.formats.preview import check_preview, write_preview
 from skybake.formats.reader import read_image
+from skybake.projection import cubemap, equirect
+
+SURVEY_ROWS = 256
+"""Rows of an equirect map that an exposure is chosen from; of larger ones texels are left out."""
+
+SURVEY_EDGE = 128
 
 # A file that does not say what its values mean is shown as if 1.0 were EV 15's white.
 UNKNOWN_WHITE = luminance_from_ev(15.0)
@@ -25,14 +31,58 @@ def legible_ev(
     Parameters
     ----------
     pixels : ndarray of float32, shape (row, column, 3)
-        Scene-linear.
+        Scene-linear. An equirect map by its shape of 1:2, a cross of 3:4, a column of
+        OpenEXR's faces of 6:1; in any other picture each pixel counts the same.
     space : ColourSpace
         Their space.
     white_luminance : float
         Luminance that RGB (1, 1, 1) stands for. [cd m⁻²]
     """
-    luminance = np.maximum(pixels @ luminance_weights(space), 0.0) * white_luminance
-    return auto_ev(luminance)
+    weights = luminance_weights(space) * white_luminance
+    rows, columns = pixels.shape[:2]
+    faces = _faces(pixels)
+    if faces:
+        step = max(1, len(faces["px"]) // SURVEY_EDGE)
+        sample = np.stack([_every(step, face) for face in faces.values()])
+        edge = sample.shape[1]
+        above = [cubemap.face_directions(face, edge)[..., 1] > 0.0 for face in faces]
+        return auto_ev(_luminance(sample, weights), cubemap.solid_angles(edge), np.stack(above))
+    sample = _every(max(1, rows // SURVEY_ROWS), pixels)
+    if columns != 2 * rows:
+        return auto_ev(_luminance(sample, weights))
+    zenith = equirect.row_zeniths(len(sample))[:, None]
+    # A map of one row has its middle on the horizon.
+    return auto_ev(_luminance(sample, weights), np.sin(zenith), zenith <= np.pi / 2.0)
+
+
+def _faces(pixels: npt.NDArray[np.float32]) -> dict[str, npt.NDArray[np.float32]]:
+    """Return the faces of a cubemap in one picture by name; none of another picture."""
+    rows, columns = pixels.shape[:2]
+    if 4 * rows == 3 * columns and columns % 4 == 0:
+        edge = columns // 4
+        return {
+            face: pixels[row * edge : (row + 1) * edge, column * edge : (column + 1) * edge]
+            for face, (row, column) in cubemap.CROSS_ORIGINS.items()
+        }
+    if rows == 6 * columns:
+        faces = pixels.reshape(6, columns, columns, 3)
+        # Mirrored twice, a face is as it was.
+        return {
+            name: cubemap.openexr_face(name, face)
+            for name, face in zip(cubemap.FACES, faces, strict=True)
+        }
+    return {}
+
+
+def _every(step: int, pixels: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
+    return pixels[step // 2 :: step, step // 2 :: step]
+
+
+def _luminance(
+    pixels: npt.NDArray[np.float32], weights: npt.NDArray[np.float64]
+) -> npt.NDArray[np.float64]:
+    luminance: npt.NDArray[np.float64] = np.maximum(pixels @ weights, 0.0)
+    return luminance
 
 
 def preview_file(

@@ -226,12 +226,15 @@ def _write(
 def _show(scene: Scene, show: Show, ev: float | None) -> float:
     """Make a small display-referred picture of a scene and return its exposure value."""
     settings = scene.settings
+    if ev is None:
+        # A cross shows each place once, but not by its solid angle, and has black corners.
+        survey = EquirectPanel(scene, min(settings.width, PREVIEW_WIDTH))
+        pixels = survey.rows(0, survey.height)
+        ev = legible_ev(pixels, settings.space, settings.white_luminance)
     if settings.projection == "equirect":
         panel: Panel = EquirectPanel(scene, min(settings.width, PREVIEW_WIDTH))
     else:
         panel = CrossPanel(scene, min(settings.width, PREVIEW_WIDTH // 4))
     pixels = panel.rows(0, panel.height)
-    if ev is None:
-        ev = legible_ev(pixels, settings.space, settings.white_luminance)
     show(pixels, settings.space, settings.white_luminance / luminance_from_ev(ev))
     return ev

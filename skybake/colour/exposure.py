@@ -54,25 +54,31 @@ def luminance_from_units(units: str) -> float:
     return 1.0 if units == "nits" else luminance_from_ev(15.0)
 
 
-_SAMPLES = 256
 _SKY = 0.36
-_HIGHLIGHT = 2.0
 _SUN_FREE = 0.99
 _MOSTLY = 0.95
+_HIGHLIGHT_SHARE = 0.75
 _DARK = 0.01
 _PLANET = 0.8
 _NO_LIGHT = 1e-30
 _DARKEST_EV = -20.0
 
 
-def auto_ev(luminance: npt.NDArray[np.floating]) -> float:
+def auto_ev(
+    luminance: npt.NDArray[np.floating],
+    solid_angle: npt.ArrayLike = 1.0,
+    above: npt.ArrayLike = True,
+) -> float:
     """Exposure value at which a sky map is legible, by day, at night and in space.
 
     Parameters
     ----------
-    luminance : ndarray of float, shape (row, column)
-        Finite; an equirect map if it is twice as wide as high, else any image, each
-        pixel of which counts the same. [cd m⁻²]
+    luminance : ndarray of float
+        Finite. [cd m⁻²]
+    solid_angle : array_like of float, optional
+        What each value counts, in any unit; broadcast to `luminance`.
+    above : array_like of bool, optional
+        Which values lie above the horizontal; broadcast to `luminance`.
 
     Returns
     -------
@@ -81,44 +87,44 @@ def auto_ev(luminance: npt.NDArray[np.floating]) -> float:
 
     Notes
     -----
-    The mean of log luminance over solid angle is brought to 0.36, a stop above middle
-    grey, as a sky is shown. The mean goes over the hemisphere above, unless that is black
-    beside the rest as it is in space, and over what is brighter than a hundredth of
-    its 99th percentile, which the sun does not reach: black space and the night side do
-    not count. Then 95 % of the whole map are kept below 2, which the display
-    transforms still tell from white; seen from high up the ground decides by that.
+    An exposure for the whole brings the mean of log luminance over solid angle to 0.36,
+    a stop above middle grey, as a sky is shown. An exposure for the highlights brings
+    them to 1, where the display transforms still keep hue. If the highlights ask for
+    less light, the exposure goes three quarters of the way to theirs, in stops: the
+    glow around the sun keeps its colour, and the rest of the sky its shape.
+
+    Highlights are the 99th percentile of the hemisphere above, which the sun's disc does
+    not reach but its aureole does, or the 95th of the whole map, which the ground
+    reaches that is seen from high up. The mean goes over the hemisphere above too, unless
+    that is black beside the rest as it is in space, and over what is brighter than a
+    hundredth of that 99th percentile: black space and the night side do not count.
     """
-    rows, columns = luminance.shape
-    step = max(1, rows // _SAMPLES)
-    sample = np.asarray(luminance[step // 2 :: step, step // 2 :: step], np.float64)
-    weight = np.ones(len(sample))
-    above = slice(None)
-    if columns == 2 * rows:
-        weight = np.sin((np.arange(len(sample)) + 0.5) * (np.pi / len(sample)))
-        above = slice(0, max(1, len(sample) // 2))
-    weights = np.broadcast_to(weight[:, None], sample.shape)
+    sample = np.asarray(luminance, np.float64)
+    weights = np.broadcast_to(np.asarray(solid_angle, np.float64), sample.shape).ravel()
+    upper = np.broadcast_to(np.asarray(above, np.bool_), sample.shape).ravel()
+    sample = sample.ravel()
 
     mostly = _weighted_quantile(sample, weights, _MOSTLY)
     bright = _weighted_quantile(sample, weights, _SUN_FREE)
-    bright_above = _weighted_quantile(sample[above], weights[above], _SUN_FREE)
+    bright_above = _weighted_quantile(sample[upper], weights[upper], _SUN_FREE)
     if bright == 0.0 and sample.any():
         # Seen from far away, the planet is less than a hundredth of the sky.
         bright = _weighted_quantile(sample[sample > 0.0], weights[sample > 0.0], _PLANET)
     elif bright_above >= _DARK * bright:
-        sample, weights, bright = sample[above], weights[above], bright_above
+        sample, weights, bright = sample[upper], weights[upper], bright_above
     lit = sample >= max(_DARK * bright, _NO_LIGHT)
     if not lit.any():
         return 0.0
-    log_mean = float(np.average(np.log2(sample[lit]), weights=weights[lit]))
-    for_sky = log_mean - math.log2(_SKY)
-    for_highlights = math.log2(max(mostly, _NO_LIGHT) / _HIGHLIGHT)
-    return max(max(for_sky, for_highlights) - math.log2(luminance_from_ev(0.0)), _DARKEST_EV)
+    for_whole = float(np.average(np.log2(sample[lit]), weights=weights[lit])) - math.log2(_SKY)
+    for_highlights = math.log2(max(mostly, bright, _NO_LIGHT))
+    for_both = for_whole + _HIGHLIGHT_SHARE * max(0.0, for_highlights - for_whole)
+    return max(for_both - math.log2(luminance_from_ev(0.0)), _DARKEST_EV)
 
 
 def _weighted_quantile(
     values: npt.NDArray[np.float64], weights: npt.NDArray[np.float64], share: float
 ) -> float:
     """Smallest value with at least this share of the weight at or below it."""
-    order = np.argsort(values, axis=None)
-    below = np.cumsum(weights.ravel()[order])
-    return float(values.ravel()[order[np.searchsorted(below, share * below[-1])]])
+    order = np.argsort(values)
+    below = np.cumsum(weights[order])
+    return float(values[order[np.searchsorted(below, share * below[-1])]])

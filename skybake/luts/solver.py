@@ -35,6 +35,9 @@ TOLERANCE = 5e-3
 these, the next passes would change a tenth."""
 
 COARSE_TOLERANCE = 1e-3
+LEAST_CHANGE = 3e-5
+"""Relative change below which single precision tells no more."""
+
 MAX_PASSES = 20
 MAX_COARSE_PASSES = 400
 
@@ -129,10 +132,11 @@ def _settle(
         change = _relative(image - state, np.maximum(abs(image), abs(scale)), grid)
         if turn == 1:
             # The first step is not mixed yet: the ratio is what one scattering leaves.
-            left = min(float(change[:sunlit].max()) / max(previous, 1e-30), 0.9999)
+            left = float(change[:sunlit].max()) / max(previous, 1e-30)
+            left = min(max(left, 1e-3), 0.9999)
         state = mixing.step(state, image)
         # In thick air a small change is not a small error.
-        if turn > 0 and change.max() * left / (1.0 - left) < COARSE_TOLERANCE:
+        if turn > 0 and change.max() < max(COARSE_TOLERANCE * (1.0 - left) / left, LEAST_CHANGE):
             return _field(new, state)
         if not np.isfinite(change).all():
             break
