@@ -18,12 +18,11 @@ from skybake.preset import load_preset, preset_names
 ELEVATIONS = (60.0, 20.0, 5.0, 0.0, -4.0, -8.0)
 TILE = (512, 256)
 GAP = 6
-HEADER = 44
-LINE = 34
-FONT_SIZE = 22
+HEADER = 52
+LINE = 42
+FONT_SIZE = 30
 PAPER, INK = (255, 255, 255), (40, 40, 40)
-WIDTH, SMALL_WIDTH = 1600, 900
-COLOURS, SMALL_COLOURS = 256, 192
+WIDTH, SMALL_WIDTH = 1250, 900
 IMAGES = Path(__file__).parent / "images"
 
 
@@ -49,8 +48,11 @@ def main() -> None:
                 with Image.open(picture) as tile:
                     sheet.paste(tile.convert("RGB"), (_left(column), top + LINE))
             print(name, flush=True)
-    _write(sheet, "gallery.png", WIDTH, COLOURS)
-    _write(sheet, "gallery-small.png", SMALL_WIDTH, SMALL_COLOURS)
+    _reduced(sheet, WIDTH).save(IMAGES / "gallery.png", optimize=True)
+    small = _reduced(sheet, SMALL_WIDTH)
+    # Pillow dithers only toward a palette that it is given.
+    indexed = small.quantize(palette=small.quantize(256), dither=Image.Dither.FLOYDSTEINBERG)
+    indexed.save(IMAGES / "gallery-small.png", optimize=True)
 
 
 def _left(column: int) -> int:
@@ -64,12 +66,9 @@ def _bake(name: str, elevation: float, folder: Path) -> Path:
     return picture
 
 
-def _write(sheet: Image.Image, name: str, width: int, colours: int) -> None:
-    """Reduce the sheet to a width and a palette of its own, which keeps it small."""
+def _reduced(sheet: Image.Image, width: int) -> Image.Image:
     height = round(sheet.height * width / sheet.width)
-    reduced = sheet.resize((width, height), Image.Resampling.LANCZOS)
-    indexed = reduced.quantize(colours, dither=Image.Dither.FLOYDSTEINBERG)
-    indexed.save(IMAGES / name, optimize=True)
+    return sheet.resize((width, height), Image.Resampling.LANCZOS)
 
 
 if __name__ == "__main__":
