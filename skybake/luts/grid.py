@@ -24,6 +24,10 @@ MAX_ALTITUDES = 96
 """Nodes of altitude, more of them where the air is thick: light between two nodes that lie an
 optical depth apart is lost to interpolation, 6 % of it at depth 10 with no more than 24."""
 
+LAST_JUDGED = math.radians(110.0)
+LAST_JUDGED_THICK = math.radians(97.0)
+"""Solar zenith angles beyond which it is night, and where thick air settles very slowly. [rad]"""
+
 UPWARD = 10
 DOWNWARD = 5
 
@@ -47,6 +51,8 @@ class Grid(NamedTuple):
         d mu, apart above and below the local horizon.
     azimuth : ndarray, shape (azimuth,)
         Midpoints of half the circle. [rad]
+    last_judged : float
+        Solar zenith angle up to which a solution must converge. [rad]
     """
 
     altitude: Array
@@ -54,12 +60,14 @@ class Grid(NamedTuple):
     mu: Array
     weight: Array
     azimuth: Array
+    last_judged: float
 
 
 def build_grid(cut: Truncation) -> Grid:
     """Choose the solver's nodes for an atmosphere."""
     medium = cut.medium
-    more = round(ALTITUDES_PER_DEPTH * max(vertical_depth(cut) - THIN_DEPTH, 0.0))
+    depth = vertical_depth(cut)
+    more = round(ALTITUDES_PER_DEPTH * max(depth - THIN_DEPTH, 0.0))
     altitude = altitude_shells(medium, min(ALTITUDES + more, MAX_ALTITUDES))
     mu, weight = zip(
         *(_split_directions(medium.r_bottom, h, UPWARD, DOWNWARD) for h in altitude), strict=True
@@ -71,6 +79,7 @@ def build_grid(cut: Truncation) -> Grid:
         mu=np.stack(mu),
         weight=np.stack(weight),
         azimuth=azimuths(ORDER),
+        last_judged=LAST_JUDGED if depth <= THIN_DEPTH else LAST_JUDGED_THICK,
     )
 
 

@@ -48,9 +48,6 @@ MAX_DEPTH = 30.0
 """Vertical optical depth up to which the solution is good: where nothing is absorbed, 2 % of
 the light that reaches the ground at depth 10, 5 % at depth 30."""
 
-LAST_JUDGED = math.radians(110.0)
-"""Solar zenith angle up to which the solution must converge; beyond it is night. [rad]"""
-
 ARC = math.radians(2.0)
 FIRST_ARC = math.radians(1.5)
 
@@ -146,7 +143,7 @@ def _settle(
 
 def _relative(change: Array, state: Array, grid: Grid) -> Array:
     """Relative size of a change, for each sun angle that is judged and each wavelength."""
-    judged = np.repeat(grid.sun_angle < LAST_JUDGED, len(state) // grid.sun_angle.size)
+    judged = np.repeat(grid.sun_angle < grid.last_judged, len(state) // grid.sun_angle.size)
     size = np.linalg.norm(state[judged], axis=1)
     relative: Array = np.linalg.norm(change[judged], axis=1) / np.maximum(size, 1e-30)
     return relative
