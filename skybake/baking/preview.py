@@ -68,7 +68,7 @@ def _faces(pixels: npt.NDArray[np.float32]) -> dict[str, npt.NDArray[np.float32]
         faces = pixels.reshape(6, columns, columns, 3)
         # Mirrored twice, a face is as it was.
         return {
-            name: cubemap.openexr_face(name, face)
+            name: cubemap.openexr_face(name, face).astype(np.float32, copy=False)
             for name, face in zip(cubemap.FACES, faces, strict=True)
         }
     return {}
