@@ -38,7 +38,7 @@ def test_light_that_reaches_the_ground_is_that_of_paths(optical_depth, tolerance
     fill_ground_irradiance(field, 0.9, np.empty(4), sky)
     # What is truncated counts as sunlight there: only both together can be compared.
     direct = 0.9 * math.exp(-(1.0 - cut.fraction[0, 0]) * optical_depth / 0.9)
-    paths = irradiance(medium, 0.0, ELEVATION, samples=100_000)
+    paths = irradiance(medium, 0.0, ELEVATION, samples=40_000)
     expected = paths.down[0] + paths.direct[0]
     noise = paths.down_stderr[0]
     assert noise < 0.02 * expected

@@ -79,7 +79,14 @@ def test_table_is_within_half_a_percent_of_rays(preset, elevation, altitude):
     assert math.sqrt(np.mean(error**2)) < 0.001
 
 
-@pytest.mark.parametrize("altitude", [101.0, 400.0, 36_000.0])
+@pytest.mark.parametrize(
+    "altitude",
+    [
+        pytest.param(101.0, marks=pytest.mark.slow),
+        400.0,
+        pytest.param(36_000.0, marks=pytest.mark.slow),
+    ],
+)
 @pytest.mark.parametrize("elevation", ELEVATIONS)
 @pytest.mark.parametrize("preset", ["earth", "mars"])
 def test_table_seen_from_space_is_within_half_a_percent(preset, elevation, altitude):
