@@ -15,7 +15,7 @@ import numpy as np
 
 from skybake.baking.panel import ColumnPanel, CrossPanel, EquirectPanel, FacePanel, Panel
 from skybake.baking.paths import default_path, map_paths
-from skybake.baking.preview import legible_ev
+from skybake.baking.preview import SURVEY_ROWS, legible_ev
 from skybake.baking.scene import Scene
 from skybake.baking.settings import MapSettings
 from skybake.colour.exposure import luminance_from_ev
@@ -30,7 +30,6 @@ BAND_ROWS = 128
 PREVIEW_WIDTH = 1024
 HALF_LARGEST = 60000.0
 HALF_SMALLEST = 2.0**-14
-SURVEY_HEIGHT = 256
 
 Progress = Callable[[float], None]
 
@@ -191,9 +190,9 @@ def _pixel(scene: Scene, settings: MapSettings, peak: float) -> Literal["half", 
         return "half" if settings.pixel == "half" else "float"
     if settings.sun_disc == "only":
         return "half" if peak < HALF_LARGEST else "float"
-    zenith = row_zeniths(SURVEY_HEIGHT)[:, None]
-    azimuth = column_bearings(2 * SURVEY_HEIGHT)[None]
-    survey = scene.evaluate(zenith, azimuth, math.pi / SURVEY_HEIGHT)
+    zenith = row_zeniths(SURVEY_ROWS)[:, None]
+    azimuth = column_bearings(2 * SURVEY_ROWS)[None]
+    survey = scene.evaluate(zenith, azimuth, math.pi / SURVEY_ROWS)
     toward_sun = scene.evaluate(np.array([[scene.sun_zenith]]), np.zeros((1, 1)), 1e-9)
     luminance = survey @ (scene.luminance / settings.white_luminance)
     lit = luminance[luminance > 0.0]
@@ -227,10 +226,9 @@ def _show(scene: Scene, show: Show, ev: float | None) -> float:
     """Make a small display-referred picture of a scene and return its exposure value."""
     settings = scene.settings
     if ev is None:
-        # A cross shows each place once, but not by its solid angle, and has black corners.
-        survey = EquirectPanel(scene, min(settings.width, PREVIEW_WIDTH))
-        pixels = survey.rows(0, survey.height)
-        ev = legible_ev(pixels, settings.space, settings.white_luminance)
+        # The same survey for all projections and sizes, so that they are shown alike.
+        survey = EquirectPanel(scene, 2 * SURVEY_ROWS).rows(0, SURVEY_ROWS)
+        ev = legible_ev(survey, settings.space, settings.white_luminance)
     if settings.projection == "equirect":
         panel: Panel = EquirectPanel(scene, min(settings.width, PREVIEW_WIDTH))
     else:

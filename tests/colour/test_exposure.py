@@ -6,7 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from skybake.colour.exposure import auto_ev, luminance_from_ev, luminance_from_units
+from skybake.colour.space import find_colour_space
 from skybake.errors import InputError
+from skybake.formats.preview import display_values
+from skybake.projection.equirect import directions, row_zeniths, solid_angles
 
 SKY_ON_DISPLAY = 0.36
 
@@ -16,6 +19,29 @@ def graded_sky(zenith, horizon, ground=None):
     sky = np.geomspace(zenith, horizon, 64)
     below = np.full(64, zenith / 10.0 if ground is None else ground)
     return np.broadcast_to(np.concatenate([sky, below])[:, None], (128, 256)).copy()
+
+
+def map_ev(luminance):
+    """Of an equirect map."""
+    rows, columns = luminance.shape
+    above = row_zeniths(rows)[:, None] < math.pi / 2.0
+    return auto_ev(luminance, solid_angles(columns, rows)[:, None], above)
+
+
+def with_aureole(sky, peak, radius):
+    """Around a sun 20 deg high in the south, halved every `radius` degrees."""
+    toward = np.array([0.0, math.sin(math.radians(20.0)), math.cos(math.radians(20.0))])
+    rows, columns = sky.shape
+    distance = np.degrees(np.arccos(np.clip(directions(columns, rows) @ toward, -1.0, 1.0)))
+    above = row_zeniths(rows)[:, None] < math.pi / 2.0
+    return sky + np.where(above, peak * 0.5 ** (distance / radius), 0.0), distance
+
+
+def codes(colour, luminance, ev, view="aces2"):
+    """Display values of a colour of luminance 1 at a luminance."""
+    pixel = np.array(colour, np.float32) * shown(luminance, ev)
+    space = find_colour_space("lin_rec709")
+    return display_values(pixel.reshape(1, 1, 3).astype(np.float32), space, view)[0, 0]
 
 
 def shown(luminance, ev):
@@ -40,14 +66,14 @@ def test_an_exposure_value_out_of_range_is_refused(ev):
 
 @given(st.floats(1e-4, 1e5))
 def test_a_uniform_sky_is_shown_at_its_brightness_whatever_it_is(luminance):
-    ev = auto_ev(np.full((64, 128), luminance))
+    ev = map_ev(np.full((64, 128), luminance))
 
     assert shown(luminance, ev) == pytest.approx(SKY_ON_DISPLAY, rel=1e-9)
 
 
 @pytest.mark.parametrize(("zenith", "horizon"), [(2e3, 2e4), (100.0, 5e3), (1e-5, 1e-4)])
 def test_noon_sunset_and_deep_twilight_stay_within_four_stops_of_middle_grey(zenith, horizon):
-    ev = auto_ev(graded_sky(zenith, horizon))
+    ev = map_ev(graded_sky(zenith, horizon))
 
     assert shown(zenith, ev) > 0.18 / 2**4
     assert shown(horizon, ev) < 0.18 * 2**4
@@ -55,10 +81,10 @@ def test_noon_sunset_and_deep_twilight_stay_within_four_stops_of_middle_grey(zen
 
 def test_the_sun_does_not_change_the_exposure():
     sky = graded_sky(2e3, 8e3)
-    without = auto_ev(sky)
+    without = map_ev(sky)
     sky[30:32, 100:102] = 1.6e9
 
-    assert auto_ev(sky) == pytest.approx(without, abs=0.02)
+    assert map_ev(sky) == pytest.approx(without, abs=0.02)
 
 
 def test_a_lit_planet_below_black_space_is_exposed_for_the_planet():
@@ -66,22 +92,44 @@ def test_a_lit_planet_below_black_space_is_exposed_for_the_planet():
     space = graded_sky(1e-30, 1e-30, ground=5e3)
     space[20, 100] = 1.6e9
 
-    assert shown(5e3, auto_ev(space)) == pytest.approx(SKY_ON_DISPLAY, rel=0.01)
+    assert shown(5e3, map_ev(space)) == pytest.approx(SKY_ON_DISPLAY, rel=0.01)
 
 
 def test_a_dark_sky_high_above_bright_ground_leaves_the_ground_below_white():
-    assert shown(5e3, auto_ev(graded_sky(50.0, 500.0, ground=5e3))) <= 2.0 + 1e-9
+    ev = map_ev(graded_sky(50.0, 500.0, ground=5e3))
+
+    assert codes((1.0, 1.0, 1.0), 5e3, ev).max() < 0.9
+
+
+@pytest.mark.parametrize("view", ["aces2", "aces1"])
+def test_a_bright_glow_around_the_sun_is_shown_with_its_colour(view):
+    """As on Mars: seven stops above the sky, halved every 3 deg, and blue."""
+    sky, distance = with_aureole(graded_sky(500.0, 1e3, ground=100.0), 1e5, 3.0)
+    ev = map_ev(sky)
+    blue = np.array([0.87, 1.0, 1.27]) / np.dot([0.87, 1.0, 1.27], [0.2126, 0.7152, 0.0722])
+    inner, middle = (
+        codes(blue, np.median(sky[abs(distance - d) < 1.0]), ev, view) for d in (4.0, 8.0)
+    )
+
+    assert inner.max() < 250 / 255
+    assert inner[2] - inner[0] > 2 / 255
+    assert middle[2] - middle[0] > 5 / 255
+    # And the sky far from the sun is not black: brighter than three stops below grey.
+    assert shown(500.0, ev) > 0.18 / 2**3
+
+
+def test_a_value_counts_by_its_solid_angle():
+    luminance, solid_angle = np.array([100.0, 400.0]), np.array([3.0, 1.0])
+
+    assert auto_ev(luminance, solid_angle) == pytest.approx(
+        auto_ev(np.array([100.0, 100.0, 100.0, 400.0]))
+    )
 
 
 def test_a_map_of_black_or_of_rounding_noise_below_zero_gets_a_finite_exposure():
-    assert auto_ev(np.zeros((64, 128))) == 0.0
-    assert auto_ev(np.full((64, 128), -1e-7)) == 0.0
+    assert map_ev(np.zeros((64, 128))) == 0.0
+    assert map_ev(np.full((64, 128), -1e-7)) == 0.0
 
 
 def test_starless_night_is_not_brightened_without_end():
-    assert auto_ev(np.full((64, 128), 1e-12)) == -20.0
-
-
-@pytest.mark.parametrize("shape", [(1, 1), (1, 2), (2, 4), (96, 16), (513, 1026)])
-def test_maps_of_any_shape_are_exposed(shape):
-    assert shown(70.0, auto_ev(np.full(shape, 70.0))) == pytest.approx(SKY_ON_DISPLAY)
+    assert map_ev(np.full((64, 128), 1e-12)) == -20.0
