@@ -1,13 +1,23 @@
-"""Files that appear whole or not at all."""
+"""Files that appear whole or not at all.
+
+A file is written in a hidden folder beside its target, which is locked as long as its
+process lives. That tells what a killed process left, even to another container, where
+the number of a process would not: it goes when the same target is written again.
+"""
 
 from __future__ import annotations
 
+import hashlib
 import os
 import secrets
 import shutil
+import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
+
+if sys.platform != "win32":
+    import fcntl
 
 from skybake.errors import OutputError
 
@@ -16,7 +26,7 @@ _FULL = 1 << 20
 
 @contextmanager
 def replace_when_whole(path: Path) -> Iterator[Path]:
-    """Yield a hidden file beside the target, which takes the target's name at the end.
+    """Yield a file in a hidden folder beside the target, which takes its name at the end.
 
     Parameters
     ----------
@@ -35,19 +45,83 @@ def replace_when_whole(path: Path) -> Iterator[Path]:
         If the target cannot be written, or writing failed with an OSError.
     """
     target = Path(os.path.realpath(path))
-    # The name does not contain the target's, which may already be as long as names can be.
-    temporary = target.with_name(f".skybake-{os.getpid()}-{secrets.token_hex(4)}{target.suffix}")
     check_target(path)
-    with _faults_of(path):
+    with _faults_of(path), _hidden_folder(target) as folder:
+        temporary = folder / f"whole{target.suffix}"
+        yield temporary
+        if target.exists():
+            shutil.copymode(target, temporary)
+        with temporary.open("rb") as file:
+            os.fsync(file.fileno())
+        temporary.replace(target)
+
+
+@contextmanager
+def _hidden_folder(target: Path) -> Iterator[Path]:
+    """Yield a locked folder beside a target and remove it, and those that dead processes left."""
+    # A digest, because the target's name may already be as long as names can be.
+    prefix = f".skybake-{hashlib.sha256(os.fsencode(target.name)).hexdigest()[:12]}-"
+    for leftover in target.parent.glob(f"{prefix}*"):
+        with suppress(OSError):
+            lock = _lock(leftover)
+            if lock is not None:
+                shutil.rmtree(leftover, ignore_errors=True)
+                os.close(lock)
+    folder = target.with_name(f"{prefix}{secrets.token_hex(8)}")
+    lock = None
+    # Made within the block: a signal may raise between any two lines.
+    try:
+        lock = _make_locked(folder)
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+        if lock is not None:
+            os.close(lock)
+
+
+def _make_locked(folder: Path) -> int | None:
+    """Make a folder and lock it, see `_lock`."""
+    while True:
+        folder.mkdir(exist_ok=True)
+        # Before it is locked, another process may take it for a leftover.
         try:
-            yield temporary
-            if target.exists():
-                shutil.copymode(target, temporary)
-            with temporary.open("rb") as file:
-                os.fsync(file.fileno())
-            temporary.replace(target)
-        finally:
-            temporary.unlink(missing_ok=True)
+            lock = _lock(folder)
+        except (BlockingIOError, FileNotFoundError):
+            continue
+        if lock is None:
+            return None
+        with suppress(FileNotFoundError):
+            if os.path.samestat(os.fstat(lock), folder.stat()):
+                return lock
+        os.close(lock)
+
+
+def _lock(folder: Path) -> int | None:
+    """Lock a folder until its descriptor is closed or this process ends.
+
+    Returns
+    -------
+    int or None
+        The descriptor; None where there are no locks, so that nothing is ever a leftover.
+
+    Raises
+    ------
+    BlockingIOError
+        If a living process holds it.
+    FileNotFoundError
+        If it is no more.
+    """
+    if sys.platform == "win32":
+        return None
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        os.close(descriptor)
+        if isinstance(error, BlockingIOError):
+            raise
+        return None
+    return descriptor
 
 
 def write_error(path: Path, temporary: Path, message: str) -> OutputError:

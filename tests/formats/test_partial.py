@@ -1,3 +1,4 @@
+import errno
 import os
 import shutil
 import signal
@@ -36,6 +37,7 @@ def run(code, *arguments):
     return subprocess.Popen(
         [sys.executable, "-c", textwrap.dedent(prelude) + textwrap.dedent(code), *arguments],
         cwd=REPOSITORY,
+        stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -67,7 +69,9 @@ def test_the_target_does_not_appear_before_the_last_row(tmp_path, suffix):
         for y in range(0, 64, 16):
             writer.write_rows(y, y + 16, sky()[y : y + 16])
             assert not path.exists()
-            assert [Path(name).suffix for name in listing(tmp_path)] == [suffix]
+            (folder,) = tmp_path.iterdir()
+            assert folder.name.startswith(".skybake-")
+            assert [Path(name).suffix for name in listing(folder)] == [suffix]
 
     assert listing(tmp_path) == [path.name]
 
@@ -89,7 +93,51 @@ def test_a_killed_process_leaves_no_target(tmp_path, suffix):
     process.communicate()
 
     assert not path.exists()
-    assert all(name.startswith(".skybake-") for name in listing(tmp_path))
+    left = listing(tmp_path)
+    assert [name[:9] for name in left] == [".skybake-"]
+    write_map(tmp_path / f"b{suffix}", sky())
+    assert listing(tmp_path) == [*left, f"b{suffix}"]
+    write_map(path, sky())
+    assert listing(tmp_path) == [path.name, f"b{suffix}"]
+
+
+@SUFFIXES
+def test_a_living_process_keeps_what_it_writes(tmp_path, suffix):
+    """While another writes the same target and ends first."""
+    path = tmp_path / f"a{suffix}"
+    process = run(
+        """
+        with open_map(path, map_spec()) as writer:
+            writer.write_rows(0, 64, sky())
+            print("writing", flush=True)
+            sys.stdin.readline()
+        """,
+        str(path),
+    )
+    assert process.stdout.readline() == "writing\n"
+    other = 2.0 * sky()
+    write_map(path, other)
+    others = path.read_bytes()
+    _, errors = process.communicate("go on\n", timeout=60)
+
+    assert process.returncode == 0, errors
+    write_map(tmp_path / f"b{suffix}", sky())
+    assert path.read_bytes() == (tmp_path / f"b{suffix}").read_bytes() != others
+    assert listing(tmp_path) == [path.name, f"b{suffix}"]
+
+
+def test_a_file_system_without_locks_is_written_and_nothing_is_taken_for_a_leftover(
+    tmp_path, monkeypatch
+):
+    def refuse(descriptor, operation):
+        raise OSError(errno.EBADF, "Bad file descriptor")
+
+    monkeypatch.setattr("fcntl.flock", refuse)
+    path = tmp_path / "a.exr"
+    with open_map(path, map_spec()) as writer:
+        writer.write_rows(0, 64, sky())
+        write_map(path, sky())
+    assert listing(tmp_path) == ["a.exr"]
 
 
 @SUFFIXES
