@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 import threading
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
 from typing import Any, NoReturn
 
 import click
@@ -19,6 +23,13 @@ from skybake.errors import SkybakeError
 
 FAILED = 1
 INTERRUPTED = 130
+ENDED_BY_SIGNAL = 128
+
+_ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
+
+
+class _EndedError(BaseException):
+    """The process was told to end, by the signal that is its argument."""
 
 
 class _CommandLine(click.Group):
@@ -30,7 +41,8 @@ class _CommandLine(click.Group):
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
         kwargs["standalone_mode"] = False
         kwargs["prog_name"] = "skybake"
-        with warnings.catch_warnings():
+        told_to_end = False
+        with warnings.catch_warnings(), _signals_raised():
             warnings.showwarning = _show_warning
             try:
                 status = super().main(*args, **kwargs)
@@ -43,11 +55,44 @@ class _CommandLine(click.Group):
                 status = _fail(str(error), FAILED)
             except BrokenPipeError:
                 # Whoever read our output has closed it; nor can Python flush it at exit.
-                os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+                os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
                 status = FAILED
             except click.Abort:
-                _exit_now(_fail("interrupted", INTERRUPTED))
+                status, told_to_end = _fail("interrupted", INTERRUPTED), True
+            except _EndedError as error:
+                status, told_to_end = _fail("terminated", ENDED_BY_SIGNAL + error.args[0]), True
+            except OSError as error:
+                # What knows a file names it; this is a full disk below standard output.
+                status = _fail(f"must be able to write, got {error.strerror or error}", FAILED)
+        if told_to_end:
+            # Only now is the exception gone, and with it what it kept from its clean-up.
+            _exit_now(status)
         sys.exit(status or 0)
+
+
+@contextmanager
+def _signals_raised() -> Iterator[None]:
+    """Raise signals that end a process as exceptions, so that no file is left half-written.
+
+    Those that are ignored, as under nohup, or handled by a program that calls `main`,
+    stay as they are.
+    """
+    raised = []
+    if threading.current_thread() is threading.main_thread():
+        raised = [number for number in _ENDING if signal.getsignal(number) is signal.SIG_DFL]
+    for number in raised:
+        signal.signal(number, _raise_ended)
+    try:
+        yield
+    finally:
+        for number in raised:
+            signal.signal(number, signal.SIG_DFL)
+
+
+def _raise_ended(number: int, _: FrameType | None) -> NoReturn:
+    # Many send a signal twice, which must not cut the clean-up short.
+    signal.signal(number, signal.SIG_IGN)
+    raise _EndedError(number)
 
 
 def _fail(message: str, status: int) -> int:
@@ -67,7 +112,8 @@ def _leave(status: int) -> NoReturn:
     """End the process without the interpreter's clean-up."""
     for stream in sys.stdout, sys.stderr:
         try:
-            stream.flush()
+            if stream is not None:
+                stream.flush()
         except OSError:
             status = status or FAILED
     os._exit(status)
@@ -92,7 +138,7 @@ def main() -> None:
       skybake presets list
       skybake preview earth_sun+30.00deg_equirect.exr -o earth.png
 
-    Exit status: 0 done, 1 failed, 2 wrong usage, 130 interrupted.
+    Exit status: 0 done, 1 failed, 2 wrong usage, 130 interrupted, 143 terminated.
     """
 
 

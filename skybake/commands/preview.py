@@ -34,7 +34,7 @@ from skybake.commands.parameters import VIEWS, exposure, with_suffix
     show_default=True,
     help="Display transform: ACES 2.0, or that of ACES 1.3.",
 )
-@click.option("--quiet", is_flag=True, help="Print nothing but faults.")
+@click.option("-q", "--quiet", is_flag=True, help="Print nothing but faults.")
 def preview(source: Path, output: Path | None, ev: float | None, view: str, quiet: bool) -> None:
     """Show the EXR or Radiance map IN as an sRGB picture, through ACES.
 

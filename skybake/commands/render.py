@@ -120,7 +120,7 @@ from skybake.commands import parameters, report, request, world
     help="Its display transform: ACES 2.0, or that of ACES 1.3.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object.")
-@click.option("--quiet", is_flag=True, help="Print no progress and no summary.")
+@click.option("-q", "--quiet", is_flag=True, help="Print no progress and no summary.")
 def render(**options: Any) -> None:
     """Bake a sky map.
 

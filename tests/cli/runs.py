@@ -19,7 +19,7 @@ def invoke(*arguments):
     return CliRunner().invoke(main, [str(argument) for argument in arguments])
 
 
-def start(*arguments, code="from skybake.cli import main; main()", wrapper=(), **keywords):
+def start(*arguments, code="from skybake.cli import run; run()", wrapper=(), **keywords):
     """Start a process with the command line, or with other code that has its arguments."""
     return subprocess.Popen(
         [*wrapper, sys.executable, "-c", code, *map(str, arguments)],

@@ -95,7 +95,7 @@ def test_every_option_is_documented_and_every_documented_option_exists(path, com
     assert heading
     section = rest.partition("\n## ")[0]
     rows = {}
-    for line in re.findall(r"^\| `(?:-o, )?(--.*) \|$", section, re.MULTILINE):
+    for line in re.findall(r"^\| `(?:-\w, )?(--.*) \|$", section, re.MULTILINE):
         name, *cells = re.split(r" *(?<!\\)\| *", line)
         rows[re.split("[ `]", name)[0]] = cells
     options = [option for option in command.params if isinstance(option, click.Option)]
@@ -107,6 +107,20 @@ def test_every_option_is_documented_and_every_documented_option_exists(path, com
             assert default == f"`{shown}`"
         for choice in getattr(option.type, "choices", ()):
             assert f"`{choice}`" in meaning
+
+
+SHORT = {"--output": "-o", "--quiet": "-q"}
+
+
+@pytest.mark.parametrize(("path", "command"), COMMANDS)
+def test_output_and_quiet_have_the_same_short_form_everywhere(path, command):
+    section = DOCUMENT.read_text("utf-8").partition(f"## skybake {' '.join(path)}\n")[2]
+    section = section.partition("\n## ")[0]
+    for option in command.params:
+        if option.opts[-1] in SHORT:
+            short = SHORT[option.opts[-1]]
+            assert option.opts == [short, option.opts[-1]]
+            assert f"| `{short}, {option.opts[-1]}" in section
 
 
 @pytest.mark.parametrize(("path", "command"), [((), main), *COMMANDS])

@@ -1,13 +1,17 @@
 """The command line as a process: interrupts, neighbours, terminals, memory, bytes."""
 
+import json
 import os
 import pty
 import signal
+import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
+from skybake.formats.reader import read_image
 from tests.cli.runs import PACKAGES, SMALL, listing, run, start
 
 
@@ -42,21 +46,84 @@ def test_bytes_depend_neither_on_the_run_nor_on_the_number_of_threads(tmp_path, 
     assert first == alone
 
 
-@pytest.mark.usefixtures("warm")
-@pytest.mark.parametrize("suffix", ["exr", "hdr"])
-def test_an_interrupt_is_exit_130_and_leaves_no_file(tmp_path, suffix):
+def start_large(folder, suffix="exr", **keywords):
+    """Start a render that takes long, and wait until it writes."""
     process = start(
-        *("render", "--size", "8192x4096", "--quiet", "--preview", "-o", f"a.{suffix}"),
-        cwd=tmp_path,
+        *("render", "--size", "8192x4096", "-q", "--preview", "-o", f"a.{suffix}"),
+        cwd=folder,
+        **keywords,
     )
-    while not listing(tmp_path):
+    while not listing(folder):
         assert process.poll() is None
         time.sleep(0.01)
-    process.send_signal(signal.SIGINT)
+    return process
+
+
+SIGNALS = [
+    (signal.SIGINT, 130, "interrupted"),
+    (signal.SIGTERM, 143, "terminated"),
+    (signal.SIGHUP, 129, "terminated"),
+]
+
+
+@pytest.mark.usefixtures("warm")
+@pytest.mark.parametrize("suffix", ["exr", "hdr"])
+@pytest.mark.parametrize(("number", "status", "word"), SIGNALS)
+def test_a_signal_that_ends_leaves_no_file(tmp_path, suffix, number, status, word):
+    process = start_large(tmp_path, suffix)
+    process.send_signal(number)
     output, errors = process.communicate(timeout=60)
-    assert (process.returncode, output) == (130, "")
-    assert errors.strip() == "skybake: interrupted"
+    assert (process.returncode, output) == (status, "")
+    assert errors.strip() == f"skybake: {word}"
     assert listing(tmp_path) == []
+
+
+@pytest.mark.usefixtures("warm")
+def test_a_second_signal_does_not_cut_the_clean_up_short(tmp_path):
+    process = start_large(tmp_path)
+    for _ in range(5):
+        process.send_signal(signal.SIGTERM)
+        time.sleep(0.002)
+    process.communicate(timeout=60)
+    assert process.returncode == 143
+    assert listing(tmp_path) == []
+
+
+@pytest.mark.usefixtures("warm")
+def test_a_signal_that_is_ignored_stays_so(tmp_path):
+    process = start("render", *SMALL, "-q", "-o", "a.exr", cwd=tmp_path, wrapper=("nohup",))
+    time.sleep(0.2)  # nohup itself must have begun
+    while process.poll() is None:
+        process.send_signal(signal.SIGHUP)
+        time.sleep(0.05)
+    process.communicate()
+    assert process.returncode == 0
+    assert listing(tmp_path) == ["a.exr"]
+
+
+@pytest.mark.usefixtures("warm")
+def test_what_a_killed_process_left_goes_with_the_next_run(tmp_path):
+    process = start_large(tmp_path)
+    process.kill()
+    process.communicate(timeout=60)
+    left = listing(tmp_path)
+    assert left
+    assert all(name.startswith(".skybake-") for name in left)
+    render(tmp_path / "b.exr", *SMALL)
+    assert listing(tmp_path) == [*left, "b.exr"]
+    render(tmp_path / "a.exr", *SMALL, "--preview")
+    assert listing(tmp_path) == ["a.exr", "a.png", "b.exr"]
+
+
+@pytest.mark.usefixtures("warm")
+def test_a_process_leaves_alone_what_another_is_writing(tmp_path):
+    process = start_large(tmp_path)
+    render(tmp_path / "a.exr", *SMALL)
+    assert process.poll() is None
+    _, errors = process.communicate(timeout=240)
+    assert (process.returncode, errors) == (0, "")
+    assert listing(tmp_path) == ["a.exr", "a.png"]
+    assert read_image(tmp_path / "a.exr")[0].shape == (4096, 8192, 3)
 
 
 def test_an_interrupt_while_kernels_compile_ends_at_once(tmp_path):
@@ -96,7 +163,7 @@ def test_a_terminal_sees_a_bar(tmp_path):
         os.dup2(slave, 2)
         os.chdir(tmp_path)
         os.environ["PYTHONPATH"] = PACKAGES
-        code = "from skybake.cli import main; main()"
+        code = "from skybake.cli import run; run()"
         arguments = ["render", *SMALL, "--json", "-o", "a.exr"]
         os.execv(sys.executable, [sys.executable, "-c", code, *arguments])  # noqa: S606
     os.close(slave)
@@ -109,6 +176,85 @@ def test_a_terminal_sees_a_bar(tmp_path):
     os.close(master)
     assert os.waitpid(pid, 0)[1] == 0
     assert b"100%" in seen
+
+
+STATUSES = [
+    (0, ("presets", "list")),
+    (1, ("presets", "show", "vulcan")),
+    (2, ("render", "--sun", "95deg")),
+    (2, ("rendr",)),
+]
+
+
+@pytest.mark.parametrize(("status", "arguments"), STATUSES)
+def test_the_program_ends_with_the_status_of_its_command(status, arguments):
+    found, _, errors = run(*arguments)
+    assert found == status
+    assert errors.count("\n") == (status != 0)
+
+
+@pytest.fixture
+def many_directions(tmp_path):
+    """A CSV that makes an answer of more than a pipe holds."""
+    path = tmp_path / "directions.csv"
+    lines = (f"{0.02 * i:.2f},{i % 360}" for i in range(4000))
+    path.write_text("\n".join(["view_zenith_deg,relative_azimuth_deg", *lines, ""]))
+    return path
+
+
+def test_all_that_is_printed_reaches_a_pipe(tmp_path, many_directions):
+    options = ("probe", "--method", "hillaire", "--directions", many_directions)
+    status, output, errors = run(*options)
+    assert (status, errors) == (0, "")
+    assert len(output) > 1 << 18
+    assert output.count("\n") == 4001
+    assert run(*options, "-o", tmp_path / "a.csv") == (0, "", "")
+    assert output == (tmp_path / "a.csv").read_text()
+
+
+@pytest.mark.usefixtures("warm")
+def test_json_reaches_a_pipe(tmp_path):
+    status, output, _ = run("render", *SMALL, "--json", "-q", "-o", tmp_path / "a.exr")
+    assert status == 0
+    assert json.loads(output)["files"] == [str(tmp_path / "a.exr")]
+
+
+@pytest.mark.parametrize("end", ["head -c0", "head -c100", "true"])
+def test_a_reader_that_closes_early_gets_no_traceback(many_directions, end):
+    """In a pipe of the shell's, with the status of the first program."""
+    code = "from skybake.cli import run; run()"
+    command = f'"$0" -c "{code}" "$@" | {end}; exit ${{PIPESTATUS[0]}}'
+    options = ("probe", "--method", "hillaire", "--directions", str(many_directions))
+    result = subprocess.run(
+        ["bash", "-c", command, sys.executable, *options],
+        # Unbuffered, Python does not notice that only a part was taken.
+        env=os.environ | {"PYTHONPATH": PACKAGES, "PYTHONUNBUFFERED": ""},
+        capture_output=True,
+        text=True,
+        timeout=240,
+        check=False,
+    )
+    assert (result.returncode, result.stderr) == (1, "")
+
+
+CLOSED = """
+import os, sys
+os.close(1)
+code = "from skybake.cli import run; run()"
+os.execv(sys.executable, [sys.executable, "-c", code, *sys.argv[1:]])
+"""
+
+
+@pytest.mark.parametrize("arguments", [("presets", "show", "mars"), ("--version",)])
+def test_without_standard_output_the_program_ends_in_peace(arguments):
+    status, output, errors = run(*arguments, code=CLOSED)
+    assert (status, output, errors) == (0, "", "")
+
+
+def test_a_full_disk_below_standard_output_is_one_line():
+    with Path("/dev/full").open("w") as full:
+        status, _, errors = run("presets", "show", "mars", stdout=full)
+    assert (status, errors) == (1, "skybake: must be able to write, got No space left on device\n")
 
 
 BARE = """
