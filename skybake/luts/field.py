@@ -18,8 +18,6 @@ from skybake.transport.exponential import fast_exp
 from skybake.transport.kernel import inner_kernel
 
 ANGLE_BINS = 2048
-NEGLIGIBLE = 3e-4
-"""Share of a ray's scattering below which an order l of a sample is left out."""
 
 TWILIGHT_SLOPE = 40.0
 TWILIGHT_ONSET = math.radians(5.0)
@@ -121,7 +119,7 @@ def sum_fields(field: DiffuseField, other: DiffuseField, factor: float) -> Diffu
 
 def lower_order(field: DiffuseField, order: int) -> DiffuseField:
     """Keep the harmonics of a field up to an order."""
-    kept = _kept_harmonics(field.harmonics.order, order)
+    kept = field.harmonics.degree <= order
     return field._replace(
         harmonics=build_harmonics(order),
         source=np.ascontiguousarray(field.source[:, : order + 1]),
@@ -132,15 +130,9 @@ def lower_order(field: DiffuseField, order: int) -> DiffuseField:
 def raise_order(solved: DiffuseField, first: DiffuseField, fine: DiffuseField) -> DiffuseField:
     """Add to `fine` what a field of lower order gained over its own first scattering."""
     radiance = fine.radiance.copy()
-    kept = _kept_harmonics(fine.harmonics.order, solved.harmonics.order)
+    kept = fine.harmonics.degree <= solved.harmonics.order
     radiance[:, :, kept] += solved.radiance - first.radiance
     return fine._replace(radiance=radiance, ground=fine.ground + solved.ground - first.ground)
-
-
-def _kept_harmonics(order: int, lower: int) -> list[int]:
-    """Find the harmonics (l, m) with l up to `lower` among those up to `order`."""
-    pairs = [(degree, m) for m in range(order + 1) for degree in range(m, order + 1)]
-    return [index for index, (degree, _) in enumerate(pairs) if degree <= lower]
 
 
 @inner_kernel

@@ -46,7 +46,7 @@ COARSE_ORDER = 3
 
 MAX_DEPTH = 30.0
 """Vertical optical depth up to which the solution is good: where nothing is absorbed, 2 % of
-the light that reaches the ground at depth 10, 5 % at depth 30."""
+the light that reaches the ground at depth 10, 6 % at depth 30."""
 
 ARC = math.radians(2.0)
 FIRST_ARC = math.radians(1.5)

@@ -7,7 +7,7 @@ from pathlib import Path
 from skybake.errors import PresetError
 from skybake.preset.document import Key
 from skybake.preset.extend import NAME, Overrides, load_document
-from skybake.preset.find import find_preset, is_path
+from skybake.preset.find import display_name, find_preset, is_path
 from skybake.preset.load import load_preset
 from skybake.preset.message import shown
 from skybake.preset.recipe import recipe_of
@@ -30,7 +30,7 @@ def resolved_text(name_or_path: str | Path, overrides: Overrides = ()) -> str:
     load_preset(name_or_path, overrides)
     path = find_preset(name_or_path)
     document = load_document(name_or_path, overrides)
-    own = load_document(name_or_path).source(()).name
+    own = display_name(path)
     recipe = recipe_of(document, path.parent)
     data = {key: value for key, value in recipe.items() if key not in ("files", "set")}
 

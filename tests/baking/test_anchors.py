@@ -16,6 +16,7 @@ from skybake.preset import (
     Spectrum,
     load_preset,
 )
+from tests.skies import view_cosines
 
 WHITE = np.array([0.3127, 0.3290])  # D65
 
@@ -61,12 +62,8 @@ def scene(name, elevation):
 
 def tristimulus(made, zenith, azimuth):
     """XYZ of a direction, angles in degrees. [cd m⁻²]"""
-    theta, phi = math.radians(zenith), math.radians(azimuth)
-    mu = math.cos(theta)
-    nu = mu * math.cos(made.sun_zenith)
-    nu += math.sin(theta) * math.sin(made.sun_zenith) * math.cos(phi)
-    light = made.sky.radiance_per_irradiance(np.array([mu]), np.array([min(nu, 1.0)]))
-    return (light @ made.xyz_weights)[0]
+    cosines = view_cosines(zenith, azimuth, math.degrees(made.sky.sun_elevation))
+    return made.sky.radiance_per_irradiance(*map(np.atleast_1d, cosines))[0] @ made.xyz_weights
 
 
 def chromaticity(xyz):

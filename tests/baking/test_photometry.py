@@ -9,6 +9,7 @@ import pytest
 from skybake.baking.scene import Scene
 from skybake.baking.settings import MapSettings
 from skybake.preset import load_preset
+from tests.skies import view_cosines
 
 
 @functools.cache
@@ -27,11 +28,8 @@ def global_illuminance(preset, elevation):
 
 def luminance(made, zenith, azimuth):
     """Luminance of directions by rays, angles in degrees, in cd/m2."""
-    theta, phi = np.radians(zenith), np.radians(azimuth)
-    sun = made.sun_zenith
-    mu = np.cos(theta)
-    nu = mu * math.cos(sun) + np.sin(theta) * math.sin(sun) * np.cos(phi)
-    return made.sky.radiance_per_irradiance(mu, np.clip(nu, -1.0, 1.0)) @ made.xyz_weights[:, 1]
+    cosines = view_cosines(zenith, azimuth, math.degrees(made.sky.sun_elevation))
+    return made.sky.radiance_per_irradiance(*cosines) @ made.xyz_weights[:, 1]
 
 
 def test_sunlight_above_the_air_has_128_to_134_klx():

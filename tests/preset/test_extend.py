@@ -17,7 +17,7 @@ from skybake.preset import (
     preset_names,
     resolved_text,
 )
-from tests.preset.test_load import MINIMAL
+from tests.preset.files import MINIMAL
 
 
 def write(folder: Path, name: str, text: str) -> Path:

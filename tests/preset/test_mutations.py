@@ -16,7 +16,7 @@ from skybake.preset import load_preset, preset_text
 from skybake.preset.document import Document, Source
 from skybake.preset.toml import toml_text
 from skybake.sky.sky import WAVELENGTHS
-from tests.preset.test_load import MINIMAL
+from tests.preset.files import MINIMAL
 
 BASES = [tomllib.loads(text) for text in (MINIMAL, *map(preset_text, ("earth", "mars")))]
 NUMBERS = st.sampled_from(
