@@ -57,7 +57,7 @@ def luminance_from_units(units: str) -> float:
 _SKY = 0.36
 _SUN_FREE = 0.99
 _MOSTLY = 0.95
-_HIGHLIGHT_SHARE = 0.75
+_HIGHLIGHT_SHARE = 0.6
 _DARK = 0.01
 _PLANET = 0.8
 _NO_LIGHT = 1e-30
@@ -90,7 +90,7 @@ def auto_ev(
     An exposure for the whole brings the mean of log luminance over solid angle to 0.36,
     a stop above middle grey, as a sky is shown. An exposure for the highlights brings
     them to 1, where the display transforms still keep hue. If the highlights ask for
-    less light, the exposure goes three quarters of the way to theirs, in stops: the
+    less light, the exposure goes three fifths of the way to theirs, in stops: the
     glow around the sun keeps its colour, and the rest of the sky its shape.
 
     Highlights are the 99th percentile of the hemisphere above, which the sun's disc does
