@@ -175,3 +175,21 @@ def test_space_above_the_air_is_black():
     made = scene("earth", 30.0, 400.0)
     zenith = np.linspace(0.0, math.degrees(made.view.zenith_first) - 0.01, 50)
     assert (by_table(made, zenith, np.full(50, 40.0)) == 0.0).all()
+
+
+@pytest.mark.parametrize("elevation", [60.0, -4.0])
+@pytest.mark.parametrize("preset", ["earth", "mars"])
+def test_leaving_the_air_changes_nothing_but_at_its_tangent(preset, elevation):
+    """Ten metres below the top and above it, where the layout of the table differs."""
+    medium = scene(preset, elevation).sky.medium
+    top = medium.r_top - medium.r_bottom
+    zenith, azimuth = np.meshgrid(
+        np.concatenate([np.linspace(93.0, 97.0, 40), np.linspace(100.0, 175.0, 40)]),
+        np.linspace(0.0, 180.0, 13),
+    )
+    below, above = (
+        by_table(scene(preset, elevation, top + step), zenith.ravel(), azimuth.ravel())
+        for step in (-0.01, 0.01)
+    )
+    difference = np.abs(above - below) / np.maximum(below, 1e-3 * below.max(axis=0))
+    assert difference.max() < 0.01
