@@ -198,7 +198,7 @@ def run_rows(rows: int, work: Callable[[int, int], object], *, chunk: int = 1) -
     itself runs there alone: waiting for the others could wait forever.
     """
     starts = range(0, rows, chunk)
-    if thread_count() == 1 or len(starts) == 1 or getattr(_here, "is_worker", False):
+    if thread_count() == 1 or len(starts) == 1 or runs_alone():
         for first in starts:
             work(first, min(first + chunk, rows))
         return
@@ -212,9 +212,19 @@ def run_rows(rows: int, work: Callable[[int, int], object], *, chunk: int = 1) -
         raise
 
 
+def lone_threads(count: int) -> ThreadPoolExecutor:
+    """Threads that share no work: `run_rows` stays in the one that calls it."""
+    return ThreadPoolExecutor(count, initializer=_mark_worker)
+
+
+def runs_alone() -> bool:
+    """Whether the caller is one of several threads that are all busy."""
+    return getattr(_here, "is_worker", False)
+
+
 @functools.cache
 def _pool() -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(thread_count(), initializer=_mark_worker)
+    return lone_threads(thread_count())
 
 
 _here = threading.local()
