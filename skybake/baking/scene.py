@@ -93,11 +93,15 @@ class Scene:
             flux[part] = (light @ self.rgb_weights) * cells.solid_angle[part, None]
         return flux
 
+    def sun_xyz(self) -> tuple[Array, Array]:
+        """XYZ by the sun's disc, on a plane that faces it and on the horizontal. [lx]"""
+        normal, horizontal = self.sun.irradiance_per_irradiance()
+        return normal @ self.xyz_weights, horizontal @ self.xyz_weights
+
     def sun_illuminance(self) -> tuple[float, float]:
         """Illuminance by the sun's disc, facing it and on the horizontal. [lx]"""
-        normal, horizontal = self.sun.irradiance_per_irradiance()
-        luminous = self.xyz_weights[:, 1]
-        return float(normal @ luminous), float(horizontal @ luminous)
+        normal, horizontal = self.sun_xyz()
+        return float(normal[1]), float(horizontal[1])
 
     def sky_illuminance(self) -> float:
         """Illuminance of a horizontal plane by the sky without the sun's disc. [lx]"""

@@ -97,6 +97,7 @@ def load_atmosphere(medium: Medium, method: str) -> Atmosphere:
         except BaseException as error:
             _recent.pop(key, None)
             pending.set_exception(error)
+            raise
     return pending.result()
 
 
