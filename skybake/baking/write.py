@@ -15,12 +15,12 @@ import numpy as np
 from skybake.baking.light import Light, attributes_from_light, light_of_scene
 from skybake.baking.panel import ColumnPanel, CrossPanel, EquirectPanel, FacePanel, Panel, Pixels
 from skybake.baking.paths import default_path, map_paths
-from skybake.baking.preview import SURVEY_ROWS, legible_ev
+from skybake.baking.preview import SURVEY_ROWS
 from skybake.baking.recipe import recipe_attributes
 from skybake.baking.scene import Scene
 from skybake.baking.settings import MapSettings
-from skybake.colour.exposure import luminance_from_ev
-from skybake.formats.preview import Show, check_preview, open_preview
+from skybake.baking.show import scene_ev, show_scene
+from skybake.formats.preview import check_preview, open_preview
 from skybake.formats.spec import Attribute, MapSpec
 from skybake.formats.writer import MapWriter, check_map_path, open_maps
 from skybake.preset import Planet, load_preset
@@ -29,7 +29,6 @@ from skybake.projection.equirect import column_bearings, row_zeniths
 from skybake.transport.kernel import runs_alone
 
 BAND_ROWS = 128
-PREVIEW_WIDTH = 1024
 HALF_LARGEST = 60000.0
 HALF_SMALLEST = 2.0**-14
 
@@ -187,7 +186,8 @@ def bake_scene(
         writers = stack.enter_context(open_maps(specs))
         _write(panels, writers, progress)
         if show:
-            preview_ev = _show(scene, show, preview_ev)
+            preview_ev = scene_ev(scene) if preview_ev is None else preview_ev
+            show_scene(scene, show, preview_ev)
     return Baked(
         **vars(light),
         files=paths,
@@ -254,19 +254,3 @@ def _compute_now(work: Callable[..., Pixels], *arguments: Any) -> Future[Pixels]
     done: Future[Pixels] = Future()
     done.set_result(work(*arguments))
     return done
-
-
-def _show(scene: Scene, show: Show, ev: float | None) -> float:
-    """Make a small display-referred picture of a scene and return its exposure value."""
-    settings = scene.settings
-    if ev is None:
-        # The same survey for all projections and sizes, so that they are shown alike.
-        survey = EquirectPanel(scene, 2 * SURVEY_ROWS).rows(0, SURVEY_ROWS)
-        ev = legible_ev(survey, settings.space, settings.white_luminance)
-    if settings.projection == "equirect":
-        panel: Panel = EquirectPanel(scene, min(settings.width, PREVIEW_WIDTH))
-    else:
-        panel = CrossPanel(scene, min(settings.width, PREVIEW_WIDTH // 4))
-    pixels = panel.rows(0, panel.height)
-    show(pixels, settings.space, settings.white_luminance / luminance_from_ev(ev))
-    return ev

@@ -1,0 +1,128 @@
+"""What a sequence consists of, before anything is computed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from skybake.baking import MapSettings
+from skybake.baking.write import check_targets
+from skybake.errors import OutputError
+from skybake.formats.spec import Attribute
+from skybake.preset import Planet
+
+
+@dataclass(frozen=True)
+class Ramp:
+    """A value that goes evenly from the first frame to the last.
+
+    Attributes
+    ----------
+    first, last : float
+        Equal if it stands still.
+    """
+
+    first: float
+    last: float
+
+    def at(self, share: float) -> float:
+        """Value after a share of the way, exact at both ends."""
+        return (1.0 - share) * self.first + share * self.last
+
+
+@dataclass(frozen=True)
+class Frame:
+    """One map of a sequence.
+
+    Attributes
+    ----------
+    number : int
+        Its frame number.
+    world : int
+        Which of the plan's planets it shows.
+    settings : MapSettings
+        Sun, observer and map.
+    output : Path
+        As `skybake.baking.bake` takes it.
+    preview : Path or None
+        The display-referred picture.
+    label : str or None
+        Its time for people.
+    attributes : mapping of str to Attribute
+        Of time and place, for its files.
+    """
+
+    number: int
+    world: int
+    settings: MapSettings
+    output: Path
+    preview: Path | None = None
+    label: str | None = None
+    attributes: Mapping[str, Attribute] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """All maps of a sequence.
+
+    Attributes
+    ----------
+    planets : tuple of Planet
+        The worlds; one, unless something of the world changes over time.
+    frames : tuple of Frame
+        By ascending number.
+    """
+
+    planets: tuple[Planet, ...]
+    frames: tuple[Frame, ...]
+
+    def planet(self, frame: Frame) -> Planet:
+        """World of a frame."""
+        return self.planets[frame.world]
+
+    def only(self, numbers: Sequence[int]) -> Plan:
+        """Return the plan with some of its frames."""
+        wanted = set(numbers)
+        return Plan(self.planets, tuple(one for one in self.frames if one.number in wanted))
+
+    def check(self, view: str) -> None:
+        """Raise what can be said of all targets before anything is computed.
+
+        Raises
+        ------
+        SkybakeError
+            If a file cannot be written under its name, or two frames share one.
+        """
+        taken: set[Path] = set()
+        for frame in self.frames:
+            check_targets(frame.output, frame.settings, frame.preview, view)
+            if frame.output in taken:
+                raise OutputError(f"{frame.output}: must be the file of one frame, got two")
+            taken.add(frame.output)
+
+    def highest_sun(self) -> Frame:
+        """Frame with the highest sun; of several the first."""
+        return max(self.frames, key=lambda frame: frame.settings.sun_elevation)
+
+    def summary(self) -> list[dict[str, Any]]:
+        """Return the frames in units for people, fit for JSON."""
+        return [
+            {
+                "frame": frame.number,
+                "label": frame.label,
+                "file": str(frame.output),
+                "preview": None if frame.preview is None else str(frame.preview),
+                **frame.settings.recipe(),
+                "set": self.planet(frame).recipe.get("set", {}),
+                **frame.attributes,
+            }
+            for frame in self.frames
+        ]
+
+
+def shares(numbers: Sequence[int]) -> list[float]:
+    """How far along each frame is from the first to the last, 0 to 1."""
+    first, span = numbers[0], numbers[-1] - numbers[0]
+    return [(number - first) / span if span else 0.0 for number in numbers]

@@ -1,0 +1,105 @@
+"""Bakes a sequence: every frame that can be, and word of those that cannot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+from skybake.baking.scene import Scene
+from skybake.baking.show import scene_ev
+from skybake.errors import SkybakeError
+from skybake.sequence.frame import Outcome
+from skybake.sequence.plan import Frame, Plan
+from skybake.sequence.pool import Run
+
+
+@dataclass(frozen=True)
+class Event:
+    """News of one frame.
+
+    Attributes
+    ----------
+    frame : Frame
+        Which.
+    kind : {"baked", "skipped", "failed", "retried"}
+        A frame that is retried has failed and will be tried again.
+    done, total : int
+        Frames that are baked, skipped or given up so far, and all there are.
+    message : str
+        Why it failed.
+    """
+
+    frame: Frame
+    kind: Literal["baked", "skipped", "failed", "retried"]
+    done: int
+    total: int
+    message: str = ""
+
+
+@dataclass(frozen=True)
+class Result:
+    """What became of a sequence.
+
+    Attributes
+    ----------
+    outcomes : tuple of Outcome
+        Frames that are done, by ascending number.
+    failures : dict of int to str
+        Why the others failed, by number.
+    """
+
+    outcomes: tuple[Outcome, ...]
+    failures: dict[int, str]
+
+
+def bake_sequence(
+    plan: Plan, run: Run, *, retries: int = 0, tell: Callable[[Event], None] = lambda _: None
+) -> Result:
+    """Bake the frames of a plan.
+
+    Parameters
+    ----------
+    plan : Plan
+        The sequence.
+    run : Run
+        What bakes frames, as `skybake.sequence.pool.local_pool`.
+    retries : int, optional
+        How often a frame that failed is tried again, after all others.
+    tell : callable, optional
+        Called with each `Event`.
+    """
+    outcomes: list[Outcome] = []
+    failures: dict[int, str] = {}
+    waiting = plan.frames
+    total = len(waiting)
+    for attempt in range(retries + 1):
+        failed = []
+        for frame, outcome in run(waiting):
+            if isinstance(outcome, Outcome):
+                outcomes.append(outcome)
+                failures.pop(frame.number, None)
+                kind: Literal["baked", "skipped"] = "baked" if outcome.is_new else "skipped"
+                tell(Event(frame, kind, len(outcomes), total))
+                continue
+            failed.append(frame)
+            failures[frame.number] = message = _message(outcome)
+            is_last = attempt == retries
+            done = len(outcomes) + (len(failed) if is_last else 0)
+            tell(Event(frame, "failed" if is_last else "retried", done, total, message))
+        waiting = tuple(sorted(failed, key=lambda frame: frame.number))
+        if not waiting:
+            break
+    outcomes.sort(key=lambda outcome: outcome.number)
+    return Result(tuple(outcomes), dict(sorted(failures.items())))
+
+
+def common_ev(plan: Plan) -> float:
+    """Exposure value for all pictures of a sequence: where the sun is highest, it is legible."""
+    frame = plan.highest_sun()
+    return scene_ev(Scene(plan.planet(frame), frame.settings))
+
+
+def _message(error: Exception) -> str:
+    text = " ".join(str(error).split())
+    return text if isinstance(error, SkybakeError) else f"{type(error).__name__}: {text}"
