@@ -46,8 +46,8 @@ def parse_frames(text: str) -> tuple[int, ...]:
     """
     if ":" in text:
         raise InputError(
-            f"frames: must have a step as in 1-100x5, got {text!r}; a colon means a step, "
-            "a stagger or every nth frame, depending on the program"
+            f"frames: must have a step as in 1-100x5, got {text!r}; a colon is a step to some "
+            "programs and a stagger to others"
         )
     frames: set[int] = set()
     for part in text.split(","):

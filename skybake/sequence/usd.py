@@ -16,6 +16,7 @@ from skybake.colour.space import find_colour_space
 from skybake.errors import InputError
 from skybake.formats.partial import check_target, replace_when_whole
 from skybake.sequence.manifest import FrameRecord, SequenceHeader, ascending
+from skybake.sequence.text import is_plain_line
 
 _SUN_IS_IN_MAPS = (
     "Not active, because the maps on the dome hold the sun's disc already. To have it sampled as "
@@ -171,7 +172,7 @@ def _triple(x: float, y: float, z: float) -> str:
 
 def _asset(path: Path, file: str) -> str:
     """Write a path so that USD looks for it beside the layer only."""
-    if not file.isprintable() or "@@@" in file:
+    if not is_plain_line(file) or "@@@" in file:
         raise InputError(f"{path}: USD must be able to hold a file's name, got {file!r}")
     anchored = file if Path(file).is_absolute() else f"./{file}"
     fence = "@@@" if "@" in file else "@"

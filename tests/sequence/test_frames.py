@@ -59,7 +59,7 @@ def test_spaces_around_parts_are_left_out():
         ("10-1", "a range must ascend, got '10-1'"),
         ("-1--10", "a range must ascend"),
         ("1-10x0", "a step must be at least 1"),
-        ("1-100:5", "must have a step as in 1-100x5, got '1-100:5'; a colon means"),
+        ("1-100:5", "must have a step as in 1-100x5, got '1-100:5'; a colon is a step"),
         ("0-1000000", "must be at most 1000000"),
         ("1-999999999", "must be at most 1000000"),
         ("1-600000,600001-1200000", "must be at most 1000000"),

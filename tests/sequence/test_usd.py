@@ -229,7 +229,8 @@ def test_a_name_that_usd_cannot_hold_leaves_the_file_as_it_was(tmp_path):
     path = tmp_path / "sky.usda"
     write_usd(path, HEADER, [record(1)])
     before = path.read_bytes()
-    with pytest.raises(InputError, match="USD must be able to hold"):
-        write_usd(path, HEADER, [record(1, files=("a\nb.exr",))])
+    for name in ("a\nb.exr", "a\udcff.exr", "a@@@.exr"):
+        with pytest.raises(InputError, match="USD must be able to hold"):
+            write_usd(path, HEADER, [record(1, files=(name,))])
     assert path.read_bytes() == before
     assert Sdf.Layer.FindOrOpen(str(path)) is not None
