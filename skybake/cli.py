@@ -19,6 +19,7 @@ from skybake.commands.presets import presets
 from skybake.commands.preview import preview
 from skybake.commands.probe import probe
 from skybake.commands.render import render
+from skybake.commands.sequence import sequence
 from skybake.errors import SkybakeError
 
 FAILED = 1
@@ -138,11 +139,13 @@ def main() -> None:
       skybake presets list
       skybake preview earth_sun+30.00deg_equirect.exr -o earth.png
 
-    Exit status: 0 done, 1 failed, 2 wrong usage, 130 interrupted, 143 terminated.
+    Exit status: 0 done, 1 failed, 2 wrong usage, 3 some frames failed, 130 interrupted,
+    143 terminated.
     """
 
 
 main.add_command(render)
+main.add_command(sequence)
 main.add_command(presets)
 main.add_command(preview)
 main.add_command(probe)

@@ -10,11 +10,14 @@ import math
 import re
 from collections.abc import Callable
 from pathlib import Path
+from typing import TypeVar
 
 import click
 
 from skybake.errors import InputError
-from skybake.units import parse_angle, parse_length
+from skybake.sequence.frames import parse_frames
+from skybake.sequence.ramp import Ramp
+from skybake.units import parse_angle, parse_duration, parse_length
 
 PROJECTIONS = ("equirect", "cubemap")
 CUBE_LAYOUTS = ("faces", "cross", "exr")
@@ -24,6 +27,8 @@ PIXELS = ("auto", "half", "float")
 SUN_DISCS = ("include", "exclude", "only")
 METHODS = ("full", "hillaire", "march")
 VIEWS = ("aces2", "aces1")
+
+Paths = TypeVar("Paths", Path | None, tuple[Path, ...])
 
 # The tolerance is for 5400arcmin, which is 90deg but for the last bit.
 _RIGHT_ANGLE = math.pi / 2 + 1e-9
@@ -79,18 +84,53 @@ def exposure(text: str) -> float | None:
     return number
 
 
+def sequence_exposure(text: str) -> float | str:
+    """Read an exposure value, ``auto`` or ``adapt``."""
+    if text == "adapt":
+        return text
+    number = exposure(text)
+    return "auto" if number is None else number
+
+
+def ramp(read: Callable[[str], float]) -> Callable[[str], Ramp]:
+    """Return what reads a value, or two with ``..`` between."""
+
+    def read_ramp(text: str) -> Ramp:
+        first, dots, last = text.partition("..")
+        return Ramp(read(first), read(last if dots else first))
+
+    return read_ramp
+
+
+def frames(text: str) -> tuple[int, ...]:
+    """Read frame numbers such as ``1-96`` or ``1-100x5,150``."""
+    try:
+        return parse_frames(text)
+    except InputError as error:
+        raise click.BadParameter(str(error).removeprefix("frames: ")) from error
+
+
+def duration(text: str) -> float:
+    """Read a duration such as ``10min``, greater than 0. [s]"""
+    seconds = _parse(text, parse_duration)
+    if not seconds > 0.0:
+        raise click.BadParameter(f"must be greater than 0s, got {text}")
+    return seconds
+
+
 def with_suffix(
     *suffixes: str,
-) -> Callable[[click.Context, click.Parameter, Path | None], Path | None]:
-    """Return a callback of an option that checks the suffix of a path."""
+) -> Callable[[click.Context, click.Parameter, Paths], Paths]:
+    """Return a callback of an option that checks the suffix of its path or paths."""
 
-    def check(context: click.Context, option: click.Parameter, path: Path | None) -> Path | None:
-        if path is not None and path.suffix.lower() not in suffixes:
-            known = " or ".join(suffixes)
-            raise click.BadParameter(
-                f"{path}: suffix must be {known}, got {path.suffix!r}", context, option
-            )
-        return path
+    def check(context: click.Context, option: click.Parameter, value: Paths) -> Paths:
+        for path in value if isinstance(value, tuple) else (value,):
+            if path is not None and path.suffix.lower() not in suffixes:
+                known = " or ".join(suffixes)
+                raise click.BadParameter(
+                    f"{path}: suffix must be {known}, got {path.suffix!r}", context, option
+                )
+        return value
 
     return check
 

@@ -19,12 +19,17 @@ _STEPS = 1000
 
 def announce(output: Path) -> None:
     """Say what is baked, and on the first run why it takes longer."""
+    announce_kernels()
+    if not sys.stderr.isatty():
+        notice(f"baking {output}")
+
+
+def announce_kernels() -> None:
+    """Say on the first run why it takes longer."""
     from skybake.transport.kernel import is_warm
 
     if not is_warm():
         notice("compiling kernels, once for this version")
-    if not sys.stderr.isatty():
-        notice(f"baking {output}")
 
 
 def notice(line: str) -> None:

@@ -15,7 +15,13 @@ from skybake.luts.field import DiffuseField, altitude_layers, sun_bins, sun_fact
 from skybake.luts.grid import ORDER
 from skybake.luts.harmonics import build_harmonics
 from skybake.luts.solver import solve_field
-from skybake.luts.store import read_tables, stored_tables, write_tables
+from skybake.luts.store import (
+    arrays_from_content,
+    content_from_arrays,
+    read_tables,
+    stored_tables,
+    write_tables,
+)
 from skybake.luts.transmittance import build_columns
 from skybake.optics.legendre import Truncation, channel_groups, keep_peaks, truncate_peaks
 from skybake.optics.lobes import Lobes, split_phase
@@ -108,6 +114,26 @@ def _read_or_build(medium: Medium, method: str, key: str) -> Atmosphere:
     atmosphere = build_atmosphere(medium, method)
     write_tables(key, _to_arrays(atmosphere))
     return atmosphere
+
+
+def atmosphere_content(medium: Medium, method: str) -> bytes:
+    """Return the tables of a medium as a file holds them, for another machine."""
+    return content_from_arrays(_to_arrays(load_atmosphere(medium, method)))
+
+
+def adopt_atmosphere(medium: Medium, method: str, content: bytes) -> None:
+    """Keep tables in memory that another machine has built, see `atmosphere_content`.
+
+    Content that is not as it was made is left alone: the tables are then built here.
+    """
+    key = atmosphere_key(medium, method)
+    arrays = None if key in _recent else arrays_from_content(content)
+    if arrays is None:
+        return
+    adopted: Future[Atmosphere] = Future()
+    adopted.set_result(_from_arrays(medium, arrays))
+    with _lock:
+        _recent[key] = adopted
 
 
 def forget_atmospheres() -> None:

@@ -17,6 +17,7 @@ from skybake.baking.recipe import HASH_ATTRIBUTE, recipe_hash
 from skybake.baking.scene import Scene
 from skybake.baking.show import scene_ev, thumbnail
 from skybake.baking.write import bake_scene
+from skybake.colour.exposure import ev_from_luminance
 from skybake.errors import InputError
 from skybake.formats.reader import read_whole_attributes
 from skybake.preset import Planet
@@ -37,6 +38,8 @@ class Look:
         Display transform.
     ev : float or None
         Exposure value of pictures; None chooses one for each frame by itself.
+    follows_map : bool
+        Without `ev`, show maps as their own exposure has them.
     thumbnail_width : int
         Of the thumbnails; 0 for none. [pixel]
     skip_existing : bool
@@ -45,6 +48,7 @@ class Look:
 
     view: str = "aces2"
     ev: float | None = None
+    follows_map: bool = False
     thumbnail_width: int = 0
     skip_existing: bool = False
 
@@ -161,7 +165,11 @@ class _Work:
 
     @cached_property
     def ev(self) -> float:
-        return scene_ev(self.scene) if self._look.ev is None else self._look.ev
+        if self._look.ev is not None:
+            return self._look.ev
+        if self._look.follows_map:
+            return ev_from_luminance(self._frame.settings.white_luminance)
+        return scene_ev(self.scene)
 
     def thumbnail(self) -> npt.NDArray[np.uint8]:
         return thumbnail(self.scene, self.ev, self._look.view, self._look.thumbnail_width)

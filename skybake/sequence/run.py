@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
@@ -12,6 +12,7 @@ from skybake.errors import SkybakeError
 from skybake.sequence.frame import Outcome
 from skybake.sequence.plan import Frame, Plan
 from skybake.sequence.pool import Run
+from skybake.sky.sky import Sky
 
 
 @dataclass(frozen=True)
@@ -92,6 +93,32 @@ def bake_sequence(
             break
     outcomes.sort(key=lambda outcome: outcome.number)
     return Result(tuple(outcomes), dict(sorted(failures.items())))
+
+
+def prepare(plan: Plan, notice: Callable[[str], None] | None = None) -> None:
+    """Build the tables that all frames share, on all CPUs; otherwise each frame builds its own.
+
+    Parameters
+    ----------
+    plan : Plan
+        The sequence.
+    notice : callable, optional
+        Called with a line for people where something takes long that later runs save.
+    """
+    missing = [sky for sky in _skies(plan) if not sky.is_solved]
+    if not missing:
+        return
+    if notice is not None:
+        times = "once" if len(missing) == 1 else f"{len(missing)} times"
+        notice(f"solving for the light in this atmosphere, {times}")
+    if len(plan.planets) == 1:
+        _ = missing[0].atmosphere
+
+
+def _skies(plan: Plan) -> Iterator[Sky]:
+    settings = plan.frames[0].settings
+    for planet in plan.planets:
+        yield Sky(planet, settings.sun_elevation, method=settings.method)
 
 
 def common_ev(plan: Plan) -> float:

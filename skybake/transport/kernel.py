@@ -214,7 +214,12 @@ def run_rows(rows: int, work: Callable[[int, int], object], *, chunk: int = 1) -
 
 def lone_threads(count: int) -> ThreadPoolExecutor:
     """Threads that share no work: `run_rows` stays in the one that calls it."""
-    return ThreadPoolExecutor(count, initializer=_mark_worker)
+    return ThreadPoolExecutor(count, initializer=stay_in_thread)
+
+
+def stay_in_thread() -> None:
+    """Let `run_rows` use no other threads from now on when this one calls it."""
+    _here.is_worker = True
 
 
 def runs_alone() -> bool:
@@ -228,10 +233,6 @@ def _pool() -> ThreadPoolExecutor:
 
 
 _here = threading.local()
-
-
-def _mark_worker() -> None:
-    _here.is_worker = True
 
 
 @functools.cache

@@ -1,0 +1,114 @@
+"""A sequence as commands for other machines, instead of being baked here."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+_GIVEN = "skybake.commands.emit.given"
+
+# What only concerns the machine that gathers the frames, or this one call.
+_LEFT_OUT = {
+    *("only", "emit_commands", "emit_openjd", "chunk_size", "dry_run", "as_json", "dask"),
+    *("manifests", "contact_sheet", "animate", "fps", "style", "quiet", "workers"),
+}
+_PATHS = {"output", "preview", "exposure_curve"}
+
+
+class RememberingCommand(click.Command):
+    """A command that knows its options as they were typed."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse, and keep the texts of the options."""
+        ctx.meta[_GIVEN] = self.make_parser(ctx).parse_args(list(args))[0]
+        return super().parse_args(ctx, args)
+
+
+def emit_options(command: Command) -> Command:
+    """Add the options that emit commands."""
+    for option in reversed(_OPTIONS):
+        command = option(command)
+    return command
+
+
+_OPTIONS = (
+    click.option(
+        "--emit-commands",
+        is_flag=True,
+        help="Print a command for each chunk of frames, for a farm or GNU parallel, and bake none.",
+    ),
+    click.option(
+        "--emit-openjd",
+        metavar="FOLDER",
+        type=click.Path(path_type=Path),
+        help="Write an Open Job Description with a task for each chunk, and bake none.",
+    ),
+    click.option(
+        "--chunk-size",
+        metavar="N",
+        type=click.IntRange(min=1),
+        default=10,
+        show_default=True,
+        help="Frames of a chunk.",
+    ),
+)
+
+
+def emit(context: click.Context, numbers: Sequence[int]) -> bool:
+    """Print or write commands if the options ask for it; whether they did.
+
+    Raises
+    ------
+    SkybakeError
+        If a format cannot hold them, or a file cannot be written.
+    """
+    options = context.params
+    if not options["emit_commands"] and options["emit_openjd"] is None:
+        return False
+
+    from skybake.sequence import farm, frames
+
+    if options["only"] is not None:
+        numbers = [number for number in numbers if number in set(options["only"])]
+    given = arguments(context)
+    if options["emit_commands"]:
+        for line in farm.commands(given, frames.chunks(numbers, options["chunk_size"])):
+            click.echo(line)
+    if options["emit_openjd"] is not None:
+        given.append("--progress=openjd")
+        name = Path(options["output"] or options["preset"]).name
+        folder = options["emit_openjd"]
+        template = farm.write_openjd(folder, given, numbers, options["chunk_size"], name)
+        if not options["emit_commands"]:
+            click.echo(template)
+    return True
+
+
+def arguments(context: click.Context) -> list[str]:
+    """Return a command that bakes the same frames from any folder, without ``--only``."""
+    given: dict[str, Any] = context.meta[_GIVEN]
+    words = ["skybake", "sequence"]
+    for parameter in context.command.params:
+        name = parameter.name or ""
+        if name in _LEFT_OUT or name not in given:
+            continue
+        option = max(parameter.opts, key=len)
+        values = given[name] if parameter.multiple else [given[name]]
+        words += [_word(option, name, value) for value in values]
+    if "output" not in given:
+        words.append(f"--output={Path.cwd() / Path(context.params['preset']).stem}.####.exr")
+    return words
+
+
+def _word(option: str, name: str, value: Any) -> str:
+    # Flags, and options whose value was left out, come as something else.
+    if not isinstance(value, str):
+        return option
+    is_file = name == "preset" and (value.endswith(".toml") or os.sep in value)
+    return f"{option}={os.path.abspath(value) if is_file or name in _PATHS else value}"
