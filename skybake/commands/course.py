@@ -7,6 +7,7 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -187,7 +188,7 @@ def _exposure_curve(options: dict[str, Any]) -> list[tuple[float, float]] | None
 
 def _interpolated(curve: list[tuple[float, float]], frame: int) -> float:
     """Value of a curve that is straight between its points and level beyond them."""
-    for (first, low), (last, high) in zip(curve, curve[1:], strict=False):
+    for (first, low), (last, high) in pairwise(curve):
         if first <= frame <= last:
             return low + (high - low) * (frame - first) / (last - first)
     return curve[0][1] if frame < curve[0][0] else curve[-1][1]

@@ -111,4 +111,4 @@ def _word(option: str, name: str, value: Any) -> str:
     if not isinstance(value, str):
         return option
     is_file = name == "preset" and (value.endswith(".toml") or os.sep in value)
-    return f"{option}={os.path.abspath(value) if is_file or name in _PATHS else value}"
+    return f"{option}={Path(value).absolute() if is_file or name in _PATHS else value}"

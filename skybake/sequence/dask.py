@@ -142,15 +142,14 @@ def _absolute(frame: Frame) -> Any:
 
 
 def _outcome(future: Any) -> Outcome | Exception:
-    """Result of a future, or why there is none."""
+    """Return the result of a future, or why there is none."""
     if future.status == "finished":
         outcome: Outcome = future.result()
         return outcome
-    try:
-        error = future.exception()
-    except Exception as lost:  # noqa: BLE001
-        error = lost
-    return error if isinstance(error, Exception) else InputError(f"dask: frame was {future.status}")
+    if future.status == "error":
+        error: Exception = future.exception()
+        return error
+    return InputError(f"dask: a frame must come back, got {future.status}")
 
 
 def _one_line(error: BaseException) -> str:
