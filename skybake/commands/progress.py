@@ -40,7 +40,7 @@ class Progress:
         """Tell of one frame."""
         self._baked += event.kind == "baked"
         if self._style == "bar":
-            self._bar.update(event.done - self._bar.pos, self._rate())
+            self._bar.update(event.done - self._bar.pos, self._speed(event).partition(", ")[2])
         elif self._style == "plain":
             notice(self._line(event))
         elif self._style == "openjd":
@@ -51,16 +51,15 @@ class Progress:
         news = f"{event.kind} {event.frame.output}"
         if event.message:
             return f"{event.done}/{event.total} {news}: {event.message}"
-        return f"{event.done}/{event.total} {news}, {self._rate()}{self._left(event)}"
+        return f"{event.done}/{event.total} {news}{self._speed(event)}"
 
-    def _rate(self) -> str:
-        return f"{self._baked / (time.perf_counter() - self._started):.1f} frames/s"
-
-    def _left(self, event: Event) -> str:
-        if not self._baked or event.done == event.total:
+    def _speed(self, event: Event) -> str:
+        """Frames in a second, and how long the others will take; of skipped ones nothing."""
+        if not self._baked:
             return ""
-        per_frame = (time.perf_counter() - self._started) / self._baked
-        return f", {per_frame * (event.total - event.done):.0f} s left"
+        rate = self._baked / (time.perf_counter() - self._started)
+        left = event.total - event.done
+        return f", {rate:.1f} frames/s" + (f", {left / rate:.0f} s left" if left else "")
 
 
 @contextmanager

@@ -237,9 +237,10 @@ def _bake(plan: Plan, part: Plan, view: str, options: dict[str, Any]) -> Result:
     if say:
         report.announce_kernels()
     with companion.beside():
-        look = _look(plan, view, options)
         if options["dask"] is None:
             prepare(part, say)
+        look = _look(plan, view, options)
+        if options["dask"] is None:
             from skybake.sequence.pool import local_pool
 
             pool = local_pool(part, look, options["workers"])
