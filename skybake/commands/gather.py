@@ -89,13 +89,9 @@ class Products:
         if self._sheet is not None:
             small = [picture[::2, ::2] if self._animation else picture for picture in pictures]
             labels = [_label(frames[outcome.number]) for outcome in outcomes]
-            contact_sheet(self._sheet, small, labels, title=self._title())
+            contact_sheet(self._sheet, small, labels, title=self._plan.planets[0].title)
             written.append(self._sheet)
         return written
-
-    def _title(self) -> str:
-        planet = self._plan.planets[0]
-        return f"{planet.name}: {planet.title}"
 
 
 def _default_manifests(plan: Plan, options: Mapping[str, Any]) -> list[Path]:

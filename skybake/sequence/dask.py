@@ -10,6 +10,7 @@ from dataclasses import replace
 from importlib.metadata import version
 from typing import Any
 
+import skybake
 from skybake.errors import InputError
 from skybake.luts.atmosphere import adopt_atmosphere, atmosphere_content
 from skybake.optics.medium import Medium
@@ -20,10 +21,10 @@ from skybake.sequence.pool import Done, Run
 from skybake.sky.sky import Sky
 from skybake.transport.kernel import stay_in_thread
 
-CONNECT_WITHIN = 8
+CONNECT_WITHIN = 6
 """Time after which a scheduler or its first worker counts as absent. [s]"""
 
-_PACKAGES = ("skybake", "numpy", "numba", "OpenImageIO")
+_PACKAGES = ("numpy", "numba", "OpenImageIO")
 
 Tables = tuple[Medium, str, bytes] | None
 
@@ -104,7 +105,8 @@ def finish_on_worker(frame: Frame, planet: Planet, tables: Tables, look: Look) -
 
 def versions() -> dict[str, str]:
     """Return what a worker's pixels depend on beside the frame."""
-    return {"python": platform.python_version()} | {name: version(name) for name in _PACKAGES}
+    ours = {"skybake": skybake.__version__, "python": platform.python_version()}
+    return ours | {name: version(name) for name in _PACKAGES}
 
 
 def _check_workers(client: Any, address: str) -> None:
