@@ -85,7 +85,7 @@ def dask_pool(plan: Plan, look: Look, address: str) -> Iterator[Run]:
                     pure=False,
                 )
                 futures[future] = frame
-            for future in as_completed(list(futures)):
+            for future in as_completed(list(futures), loop=client.loop):
                 yield futures[future], _outcome(future)
                 future.release()
 
