@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -80,6 +80,7 @@ def bake(
     preview: Path | str | None = None,
     preview_ev: float | None = None,
     preview_view: str = "aces2",
+    extra: Mapping[str, Attribute] | None = None,
     progress: Progress | None = None,
     notice: Callable[[str], None] | None = None,
 ) -> Baked:
@@ -100,6 +101,8 @@ def bake(
         Its exposure value; by default chosen from the picture.
     preview_view : {"aces2", "aces1"}, optional
         Its rendering.
+    extra : mapping of str to Attribute, optional
+        More that the files shall say, such as ``{"skybake:time": "2026-06-21T04:00:00Z"}``.
     progress : callable, optional
         Called with the share that is done, from 0 to 1.
     notice : callable, optional
@@ -136,6 +139,7 @@ def bake(
         "skybake:skyIlluminance": sky_illuminance,
         "skybake:preset": planet.name,
         "skybake:recipe": json.dumps({"map": settings.recipe(), "preset": planet.recipe}),
+        **(extra or {}),
     }
     panels = dict(zip(paths, _panels(scene), strict=True))
     pixel = _pixel(scene, settings, max(panel.peak for panel in panels.values()))
