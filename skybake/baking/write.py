@@ -93,7 +93,8 @@ def bake(
     preview_view : {"aces2", "aces1"}, optional
         Its rendering.
     attributes : mapping of str to Attribute, optional
-        What the files shall say beside their light and their recipe.
+        What the files shall say beside their light and their recipe, such as
+        ``{"skybake:time": "2026-06-21T04:00:00Z"}``.
     progress : callable, optional
         Called with the share that is done, from 0 to 1.
     notice : callable, optional

@@ -9,6 +9,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
+from contextlib import suppress
+from datetime import date
 from pathlib import Path
 from typing import TypeVar
 
@@ -47,6 +49,38 @@ def elevation(text: str) -> float:
 def bearing(text: str) -> float:
     """Read an angle. [rad]"""
     return _parse(text, parse_angle)
+
+
+def latitude(text: str) -> float:
+    """Read a latitude such as ``48.8566``, ``54.8S`` or ``-54.8deg``. [rad]"""
+    angle = _hemisphere(text, "N", "S")
+    if abs(angle) > _RIGHT_ANGLE:
+        raise click.BadParameter(f"must be from -90deg to 90deg, got {text}")
+    return angle
+
+
+def longitude(text: str) -> float:
+    """Read a longitude, -180deg to 360deg in the east; it becomes -180deg to 180deg. [rad]"""
+    angle = _hemisphere(text, "E", "W")
+    if not -2 * _RIGHT_ANGLE <= angle <= 4 * _RIGHT_ANGLE:
+        raise click.BadParameter(f"must be from -180deg to 360deg, got {text}")
+    return math.remainder(angle, 2 * math.pi)
+
+
+def solar_longitude(text: str) -> float:
+    """Read an angle from 0deg to 360deg. [rad]"""
+    angle = _parse(text, parse_angle)
+    if not 0.0 <= angle <= 4 * _RIGHT_ANGLE:
+        raise click.BadParameter(f"must be from 0deg to 360deg, got {text}")
+    return angle
+
+
+def day(text: str) -> date:
+    """Read a date such as ``2026-06-21``."""
+    if re.fullmatch(r"\d{4}-\d\d-\d\d", text, re.ASCII):
+        with suppress(ValueError):
+            return date.fromisoformat(text)
+    raise click.BadParameter(f"must be a date such as 2026-06-21, got {text!r}")
 
 
 def length(text: str) -> float:
@@ -133,6 +167,17 @@ def with_suffix(
         return value
 
     return check
+
+
+def _hemisphere(text: str, positive: str, negative: str) -> float:
+    """Read an angle that may end in the letter of a hemisphere instead of having a sign. [rad]"""
+    letter = text.strip()[-1:]
+    if letter not in (positive, negative):
+        return _parse(text, parse_angle)
+    angle = _parse(text.strip()[:-1], parse_angle)
+    if text.strip()[0] in "+-":
+        raise click.BadParameter(f"must have a sign or {letter}, not both, got {text}")
+    return angle if letter == positive else -angle
 
 
 def _parse(text: str, parse: Callable[[str], float]) -> float:

@@ -8,7 +8,8 @@ from typing import Any
 
 import click
 
-from skybake.commands import maps, parameters, report, request, world
+from skybake.commands import maps, moment, parameters, report, request, world
+from skybake.commands.place import place_options
 
 
 @click.command()
@@ -22,6 +23,8 @@ from skybake.commands import maps, parameters, report, request, world
     show_default=True,
     help="Compass bearing of the sun: 0deg is north, 90deg east.",
 )
+@moment.time_option
+@place_options
 @parameters.altitude_option
 @maps.map_options
 @click.option(
@@ -62,10 +65,16 @@ def render(**options: Any) -> None:
     Examples:
       skybake render --sun 5deg --preset mars --preview
       skybake render --sun -4deg --altitude 2km --size 4096x2048 -o dusk.exr
+      skybake render --lat 48.86 --lon 2.35 --tz Europe/Paris --date 2026-06-21 --time sunset-20min
+      skybake render --preset mars --site gale --ls 180 --time 16:30
       skybake render --projection cubemap --size 512 --colorspace acescg --units nits
     """
     started = time.perf_counter()
-    request.check_together(click.get_current_context())
+    context = click.get_current_context()
+    request.check_together(context)
+    when = moment.moment(context)
+    if when is not None:
+        options |= {"sun_elevation": when.sun_elevation, "sun_azimuth": when.sun_azimuth}
     settings = request.map_settings(options)
 
     from skybake.baking import bake, companion, default_path
@@ -83,11 +92,12 @@ def render(**options: Any) -> None:
             preview=request.preview_path(options["preview"], output),
             preview_ev=options["preview_ev"],
             preview_view=options["view"] or parameters.VIEWS[0],
+            attributes=None if when is None else when.attributes,
             progress=progress,
             notice=None if quiet else report.notice,
         )
     seconds = time.perf_counter() - started
     if options["as_json"]:
-        report.print_json(baked, planet.name, settings, seconds)
+        report.print_json(baked, planet.name, settings, seconds, when)
     elif not quiet:
         report.print_summary(baked, seconds)

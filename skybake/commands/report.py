@@ -13,6 +13,7 @@ import click
 
 if TYPE_CHECKING:
     from skybake.baking import Baked, MapSettings
+    from skybake.commands.moment import Moment
 
 _STEPS = 1000
 
@@ -62,16 +63,21 @@ def print_summary(baked: Baked, seconds: float) -> None:
         click.echo(f"{baked.clamped} negative values, out of gamut, were stored as 0")
 
 
-def print_json(baked: Baked, preset: str, settings: MapSettings, seconds: float) -> None:
+def print_json(
+    baked: Baked, preset: str, settings: MapSettings, seconds: float, when: Moment | None
+) -> None:
     """Print one JSON object on one line."""
-    click.echo(json.dumps(result(baked, preset, settings, seconds)))
+    click.echo(json.dumps(result(baked, preset, settings, seconds, when)))
 
 
-def result(baked: Baked, preset: str, settings: MapSettings, seconds: float) -> dict[str, Any]:
+def result(
+    baked: Baked, preset: str, settings: MapSettings, seconds: float, when: Moment | None
+) -> dict[str, Any]:
     """Return what ``--json`` prints, see docs/cli.md."""
     return {
         "files": [str(path) for path in baked.files],
         "preset": preset,
+        "time": None if when is None else when.attributes.get("skybake:time"),
         "sun_direction": list(baked.sun_direction),
         "direct_illuminance_lux": baked.direct_illuminance,
         "direct_normal_illuminance_lux": baked.direct_normal_illuminance,

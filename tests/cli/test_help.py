@@ -21,7 +21,7 @@ from skybake.sky.sky import METHODS
 from tests.cli.runs import invoke, run
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "cli.md"
-HEAVY = {"numpy", "numba", "OpenImageIO", "scipy", "colour", "llvmlite"}
+HEAVY = {"numpy", "numba", "OpenImageIO", "scipy", "colour", "llvmlite", "ephem"}
 
 AFTER = """
 import json, sys

@@ -42,7 +42,7 @@ def test_json_says_what_was_baked(folder):
     assert told["clamped"] == 0
     assert (told["preview"], told["preview_ev"]) == (None, None)
     assert 0.0 < told["seconds"] < 300.0
-    assert len(told) == 14
+    assert len(told) == 15
 
 
 def test_the_file_carries_what_json_says():
