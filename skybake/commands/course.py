@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from skybake.commands import moment, request, world
+from skybake.commands import moment, place, request, world
 from skybake.errors import InputError
 from skybake.sequence.ramp import Ramp, shares
 
@@ -76,7 +76,7 @@ def plan_from_options(context: click.Context) -> Plan:
     return Plan(planets, tuple(frames))
 
 
-def output_pattern(options: dict[str, Any], planet: Planet) -> FramePattern:
+def output_pattern(options: Mapping[str, Any], planet: Planet) -> FramePattern:
     """Return where the maps go."""
     from skybake.sequence.frames import FramePattern
 
@@ -89,7 +89,7 @@ def _moments(context: click.Context) -> list[moment.Moment] | None:
     if options["start"] is None and options["end"] is None:
         if options["every"] is not None:
             raise click.UsageError("--every: needs --from and --to")
-        moment.refuse_places(options, "--from and --to")
+        place.refuse_places(options, "--from and --to")
         return None
     if options["start"] is None or options["end"] is None:
         raise click.UsageError("--from, --to: each needs the other")
@@ -168,7 +168,7 @@ def _exposure_curve(options: dict[str, Any]) -> list[tuple[float, float]] | None
             rows = list(csv.DictReader(file))
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"{path}: must be a CSV file that can be read, got {error}") from error
-    curve = []
+    curve: list[tuple[float, float]] = []
     for line, row in enumerate(rows, start=2):
         try:
             point = float(row["frame"]), float(row["ev"])

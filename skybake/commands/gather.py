@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Mapping
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -151,4 +152,7 @@ def _seen_from(folder: Path, path: Path) -> str:
 
 def _label(frame: Frame) -> str:
     sun = f"sun {math.degrees(frame.settings.sun_elevation):.1f} deg"
-    return f"{frame.label}  {sun}" if frame.label else f"{frame.number}  {sun}"
+    time = frame.label or str(frame.number)
+    if frame.label and "skybake:time" in frame.attributes:
+        time = f"{datetime.fromisoformat(frame.label):%Y-%m-%d %H:%M}"
+    return f"{time}  {sun}"

@@ -70,6 +70,7 @@ def progress(style: str, total: int, *, quiet: bool) -> Iterator[Progress]:
     if style != "bar":
         yield Progress(style)
         return
-    shown = {"label": "baking", "file": sys.stderr, "item_show_func": lambda rate: rate}
-    with click.progressbar(length=total, **shown) as bar:
+    with click.progressbar(
+        length=total, label="baking", file=sys.stderr, item_show_func=lambda speed: speed
+    ) as bar:
         yield Progress(style, bar)
