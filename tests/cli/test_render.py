@@ -71,6 +71,10 @@ def test_the_file_carries_what_json_says():
         (("--sun", "5400arcmin"), "earth_sun+90.00deg_equirect.exr"),
         (("--altitude", "30000ft"), "earth_sun+30.00deg_9144m_equirect.exr"),
         (("--preset", "mars", "--altitude", "2km"), "mars_sun+30.00deg_2000m_equirect.exr"),
+        (
+            ("--ground-albedo", "snow", "--sun-azimuth", "450", "--sun-disc", "exclude"),
+            "earth_ground.albedo=snow_sun+30.00deg_az090.00deg_nodisc_equirect.exr",
+        ),
     ],
 )
 def test_the_default_name_says_what_it_is_and_lies_in_the_current_folder(folder, arguments, name):
