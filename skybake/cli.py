@@ -15,6 +15,7 @@ from typing import Any, NoReturn
 import click
 
 import skybake
+from skybake.commands.cache import cache
 from skybake.commands.presets import presets
 from skybake.commands.preview import preview
 from skybake.commands.probe import probe
@@ -149,6 +150,7 @@ main.add_command(sequence)
 main.add_command(presets)
 main.add_command(preview)
 main.add_command(probe)
+main.add_command(cache)
 
 
 def run() -> NoReturn:
