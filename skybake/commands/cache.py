@@ -9,6 +9,7 @@ from typing import Any
 
 import click
 
+from skybake.commands.memory import check_memory
 from skybake.commands.report import notice
 
 _MEGABYTE = 1e6
@@ -77,6 +78,7 @@ def warm(presets: tuple[str, ...], quiet: bool) -> None:
       skybake cache warm
       SKYBAKE_CACHE_DIR=/opt/skybake skybake cache warm --preset earth --preset mars
     """
+    check_memory()
     started = time.perf_counter()
     say = _silent if quiet else notice
     say("compiling kernels")
