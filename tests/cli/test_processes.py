@@ -354,3 +354,49 @@ def test_killed_at_any_moment_it_leaves_whole_files_or_none(tmp_path, way):
                 (folder / name).unlink()
     assert run(*KILLED[way], cwd=folder) == (0, "", "")
     assert listing(folder) == listing(whole)
+
+
+BARE = {"PATH": os.environ["PATH"], "PYTHONPATH": PACKAGES}
+
+
+def run_bare(*arguments, cwd, **environment):
+    """Run with hardly any environment."""
+    cache = {"SKYBAKE_CACHE_DIR": os.environ["SKYBAKE_CACHE_DIR"]}
+    result = subprocess.run(
+        [sys.executable, "-m", "skybake", *arguments],
+        cwd=cwd,
+        env={**BARE, **cache, **environment},
+        capture_output=True,
+        check=False,
+        timeout=240,
+    )
+    return result.returncode, result.stdout, result.stderr
+
+
+@pytest.mark.usefixtures("warm")
+@pytest.mark.parametrize(
+    "environment", [{}, {"LC_ALL": "C"}, {"LC_ALL": "POSIX", "TERM": "dumb"}, {"TZ": "Nowhere"}]
+)
+def test_without_home_terminal_and_locale_maps_are_as_they_are(tmp_path, environment):
+    name = "a folder/sky é 空.exr"
+    (tmp_path / "a folder").mkdir()
+    expected = render(tmp_path / "plain.exr", *SMALL)
+    assert run_bare("render", *SMALL, "-q", "-o", name, cwd=tmp_path, **environment) == (
+        0,
+        b"",
+        b"",
+    )
+    assert (tmp_path / name).read_bytes() == expected
+
+
+@pytest.mark.usefixtures("warm")
+@pytest.mark.parametrize("arguments", [("render", *SMALL, "-o"), ("preview",)])
+def test_a_name_that_is_no_utf8_is_one_line(tmp_path, arguments):
+    name = b"sky\xff.exr"
+    if arguments[0] == "preview":
+        (tmp_path / os.fsdecode(name)).write_bytes(b"")
+    status, output, errors = run_bare(*arguments, name, cwd=tmp_path)
+    assert (status, output) == (1, b"")
+    assert errors.splitlines()[-1].startswith(b"skybake: sky")
+    assert b"must be UTF-8" in errors
+    assert len(errors.splitlines()) <= 2
