@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 from skybake.formats.reader import read_whole_attributes
-from tests.cli.runs import PACKAGES, SMALL, listing, run, start
-
-QUICK = ("sequence", *SMALL, "--method", "hillaire", "--sun", "20deg..60deg")
+from tests.cli.runs import PACKAGES, listing, run, start
+from tests.sequence.runs import QUICK, bake, contents, wait_for
 
 
 @pytest.fixture(scope="module")
@@ -23,27 +22,11 @@ def undisturbed(tmp_path_factory):
     return contents(folder)
 
 
-def bake(folder, *arguments, status=0):
-    found, output, errors = run(*QUICK, "-o", "a.#.exr", "-q", *arguments, cwd=folder)
-    assert (found, output) == (status, ""), errors
-    return errors
-
-
-def contents(folder):
-    return {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
-
-
 def frames(folder):
     """Finished frames: name, and what changes when a file is written again."""
     return {
         path.name: (path.stat().st_ino, path.stat().st_mtime_ns) for path in folder.glob("a.*.exr")
     }
-
-
-def wait_for(condition, process):
-    while not condition():
-        assert process.poll() is None
-        time.sleep(0.005)
 
 
 def killed(folder, delay):
