@@ -68,6 +68,9 @@ def attributes_from_light(light: Light) -> dict[str, Attribute]:
 def light_from_attributes(attributes: Mapping[str, Any]) -> Light:
     """Return what the attributes of a map's file say.
 
+    All numbers are of single precision, as files hold them, in their shortest decimals:
+    attributes that have been in a file, of any format, give the same light as before.
+
     Raises
     ------
     KeyError, ValueError
@@ -83,7 +86,7 @@ def light_from_attributes(attributes: Mapping[str, Any]) -> Light:
 def _numbers(value: Any) -> list[float]:
     """Numbers of an attribute, which a Radiance picture holds as text."""
     values = value.split() if isinstance(value, str) else np.atleast_1d(value)
-    return [float(number) for number in values]
+    return [float(str(np.float32(number))) for number in values]
 
 
 def _colour(xyz: np.ndarray) -> Triple:

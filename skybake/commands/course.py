@@ -42,17 +42,14 @@ def plan_from_options(context: click.Context) -> Plan:
     moments = _moments(context)
     numbers = _numbers(options, moments)
 
-    from skybake.sequence.frames import FramePattern
     from skybake.sequence.plan import Frame, Plan
 
     along = shares(numbers)
     planets = _planets(options, along)
-    pattern = output_pattern(options, planets[0])
-    pattern.check(numbers)
+    pattern = output_pattern(options, planets[0], numbers)
     previews = None
     if options["preview"] not in {None, request.BESIDE}:
-        previews = FramePattern.parse(str(options["preview"]))
-        previews.check(numbers)
+        previews = _pattern("--preview", str(options["preview"]), numbers)
     curve = _exposure_curve(options)
     frames = []
     for i, (number, share) in enumerate(zip(numbers, along, strict=True)):
@@ -76,11 +73,51 @@ def plan_from_options(context: click.Context) -> Plan:
     return Plan(planets, tuple(frames))
 
 
-def output_pattern(options: Mapping[str, Any], planet: Planet) -> FramePattern:
-    """Return where the maps go."""
+def part_of(plan: Plan, only: tuple[int, ...] | None) -> Plan:
+    """Return the plan with the frames of ``--only``, all without it.
+
+    Numbers between the plan's frames are let pass: some farms name ranges without steps.
+
+    Raises
+    ------
+    click.UsageError
+        If there is none of them, or one lies before or beyond all frames.
+    """
+    if only is None:
+        return plan
+    part = plan.only(only)
+    first, last = plan.frames[0].number, plan.frames[-1].number
+    outside = next((number for number in only if not first <= number <= last), None)
+    if outside is not None or not part.frames:
+        raise click.UsageError(
+            f"--only: must name frames of {first}-{last}, "
+            f"got {only[0] if outside is None else outside}"
+        )
+    return part
+
+
+def output_pattern(
+    options: Mapping[str, Any], planet: Planet, numbers: Sequence[int] = ()
+) -> FramePattern:
+    """Return where the maps go.
+
+    Raises
+    ------
+    click.UsageError
+        If the option is no pattern, or has no place for the numbers of several frames.
+    """
+    return _pattern("--output", str(options["output"] or f"{planet.name}.####.exr"), numbers)
+
+
+def _pattern(option: str, text: str, numbers: Sequence[int]) -> FramePattern:
     from skybake.sequence.frames import FramePattern
 
-    return FramePattern.parse(str(options["output"] or f"{planet.name}.####.exr"))
+    try:
+        pattern = FramePattern.parse(text)
+        pattern.check(numbers)
+    except InputError as error:
+        raise click.UsageError(f"{option}: {error}") from error
+    return pattern
 
 
 def _moments(context: click.Context) -> list[moment.Moment] | None:
@@ -144,7 +181,7 @@ def _planets(options: dict[str, Any], along: Sequence[float]) -> tuple[Planet, .
             {
                 **options,
                 "changes": tuple(
-                    (key, value if ramp is None else ramp.at(share))
+                    (key, value if ramp is None else _plain(ramp.at(share)))
                     for (key, value), (_, ramp) in zip(options["changes"], changes, strict=True)
                 ),
             },
@@ -158,13 +195,18 @@ def _ramp(value: Any) -> Ramp | None:
     return None if found is None else Ramp(float(found[1]), float(found[2]))
 
 
+def _plain(number: float) -> float:
+    """Return a number as one would type it, since the text of a recipe tells 2 from 2.0."""
+    return int(number) if number.is_integer() else number
+
+
 def _exposure_curve(options: dict[str, Any]) -> list[tuple[float, float]] | None:
     """Frames and exposure values, ascending."""
     path: Path | None = options["exposure_curve"]
     if path is None:
         return None
     try:
-        with path.open(encoding="utf-8", newline="") as file:
+        with path.open(encoding="utf-8-sig", newline="") as file:
             rows = list(csv.DictReader(file))
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"{path}: must be a CSV file that can be read, got {error}") from error

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
 import click
+
+from skybake.commands.world import read_value
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -16,9 +18,13 @@ _GIVEN = "skybake.commands.emit.given"
 # What only concerns the machine that gathers the frames, or this one call.
 _LEFT_OUT = {
     *("only", "emit_commands", "emit_openjd", "chunk_size", "dry_run", "as_json", "dask"),
-    *("manifests", "contact_sheet", "animate", "fps", "style", "quiet", "workers"),
+    *("manifests", "contact_sheet", "animate", "fps", "style", "quiet"),
 }
+_OF_PREVIEWS = {"preview_ev", "view"}
 _PATHS = {"output", "preview", "exposure_curve"}
+
+HOW = frozenset({"skip_existing", "retry", "workers"})
+"""Options that say how frames are baked, and not which."""
 
 
 class RememberingCommand(click.Command):
@@ -90,13 +96,25 @@ def emit(context: click.Context, numbers: Sequence[int]) -> bool:
     return True
 
 
-def arguments(context: click.Context) -> list[str]:
-    """Return a command that bakes the same frames from any folder, without ``--only``."""
+def arguments(context: click.Context, leave_out: Collection[str] = ()) -> list[str]:
+    """Return a command that bakes the same frames from any folder, without ``--only``.
+
+    Parameters
+    ----------
+    context : click.Context
+        With the options of ``skybake sequence``.
+    leave_out : collection of str, optional
+        Names of options that the command shall not have either.
+    """
     given: dict[str, Any] = context.meta[_GIVEN]
+    left_out = _LEFT_OUT | set(leave_out)
+    if "preview" not in given:
+        # They were for the contact sheet, which is left out too.
+        left_out |= _OF_PREVIEWS
     words = ["skybake", "sequence"]
     for parameter in context.command.params:
         name = parameter.name or ""
-        if name in _LEFT_OUT or name not in given:
+        if name in left_out or name not in given:
             continue
         option = max(parameter.opts, key=len)
         values = given[name] if parameter.multiple else [given[name]]
@@ -111,4 +129,19 @@ def _word(option: str, name: str, value: Any) -> str:
     if not isinstance(value, str):
         return option
     is_file = name == "preset" and (value.endswith(".toml") or os.sep in value)
-    return f"{option}={Path(value).absolute() if is_file or name in _PATHS else value}"
+    if is_file or name in _PATHS:
+        value = str(Path(value).absolute())
+    elif name in {"changes", "ground_albedo"}:
+        value = _with_absolute_file(value)
+    return f"{option}={value}"
+
+
+def _with_absolute_file(change: str) -> str:
+    """Make a file of the user's absolute in ``KEY=FILE`` or ``FILE``."""
+    from skybake.preset.tables import is_user_file
+
+    key, equals, value = change.rpartition("=")
+    file = read_value(value.strip())
+    if not isinstance(file, str) or not is_user_file(file):
+        return change
+    return f"{key}{equals}{Path(file).absolute()}"

@@ -12,7 +12,7 @@ from typing import Any
 import click
 
 from skybake.commands.course import output_pattern
-from skybake.commands.emit import arguments
+from skybake.commands.emit import HOW, arguments
 from skybake.formats.partial import check_target
 from skybake.sequence.animation import check_animation, write_animation
 from skybake.sequence.frame import Outcome
@@ -45,7 +45,13 @@ class Products:
         self._manifests = list(options["manifests"]) or _default_manifests(plan, options)
         self._sheet: Path | None = options["contact_sheet"]
         self._animation: Path | None = options["animate"]
-        self._header = _header(plan, options["fps"], arguments(context))
+        self._header = _header(plan, options["fps"], arguments(context, HOW))
+
+    @property
+    def paths(self) -> list[Path]:
+        """All files."""
+        pictures = (self._animation, self._sheet)
+        return [*self._manifests, *(path for path in pictures if path is not None)]
 
     def check(self) -> None:
         """Raise what can be said of the files before anything is computed.
@@ -82,17 +88,14 @@ class Products:
                 write_usd(path, self._header, records)
             else:
                 write_manifest(path, self._header, records)
-        written = list(self._manifests)
         pictures = [one.thumbnail for one in outcomes if one.thumbnail is not None]
         if self._animation is not None:
             write_animation(self._animation, pictures, self._header.fps)
-            written.append(self._animation)
         if self._sheet is not None:
             small = [picture[::2, ::2] if self._animation else picture for picture in pictures]
             labels = [_label(frames[outcome.number]) for outcome in outcomes]
             contact_sheet(self._sheet, small, labels, title=self._plan.planets[0].title)
-            written.append(self._sheet)
-        return written
+        return self.paths
 
 
 def _default_manifests(plan: Plan, options: Mapping[str, Any]) -> list[Path]:
@@ -100,7 +103,8 @@ def _default_manifests(plan: Plan, options: Mapping[str, Any]) -> list[Path]:
     if options["only"] is not None:
         return []
     pattern = output_pattern(options, plan.planets[0])
-    stem = (pattern.before.removesuffix(".exr").removesuffix(".hdr")).rstrip("._-")
+    before = pattern.before.replace("{face}", "").removesuffix(".exr").removesuffix(".hdr")
+    stem = before.rstrip("._-")
     return [pattern.folder / f"{stem or plan.planets[0].name}.sequence.json"]
 
 

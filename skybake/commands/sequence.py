@@ -13,8 +13,10 @@ import click
 from skybake.commands import course, emit, maps, parameters, progress, report, request, world
 from skybake.commands.memory import check_memory
 from skybake.commands.place import place_options
+from skybake.errors import SkybakeError
 
 if TYPE_CHECKING:
+    from skybake.commands.gather import Products
     from skybake.sequence.frame import Look
     from skybake.sequence.plan import Plan
     from skybake.sequence.run import Result
@@ -206,9 +208,7 @@ def sequence(**options: Any) -> None:
     plan = course.plan_from_options(context)
     if emit.emit(context, [frame.number for frame in plan.frames]):
         return
-    part = plan if options["only"] is None else plan.only(options["only"])
-    if not part.frames:
-        raise click.UsageError("--only: must name some of the frames, got none of them")
+    part = course.part_of(plan, options["only"])
     if options["dry_run"]:
         _print_plan(part, as_json=options["as_json"])
         return
@@ -217,18 +217,30 @@ def sequence(**options: Any) -> None:
 
     products = Products(plan, context)
     view = options["view"] or parameters.VIEWS[0]
-    part.check(view)
+    part.check(view, products.paths)
     products.check()
     result = _bake(plan, part, view, options)
-    written = products.write(result)
+    if result.failures:
+        _print_failures(result, openjd=options["style"] == "openjd")
+    written = _write_products(products, result)
     seconds = time.perf_counter() - started
     if options["as_json"]:
         click.echo(json.dumps(_summary(result, written, seconds)))
     elif not options["quiet"]:
         _print_summary(result, written, seconds)
     if result.failures:
-        _print_failures(result, openjd=options["style"] == "openjd")
         raise click.exceptions.Exit(SOME_FAILED)
+
+
+def _write_products(products: Products, result: Result) -> list[Path]:
+    """Write them; where frames failed, their failure stays the one that counts."""
+    try:
+        return products.write(result)
+    except SkybakeError as error:
+        if not result.failures:
+            raise
+        report.notice(str(error))
+        return []
 
 
 def _bake(plan: Plan, part: Plan, view: str, options: dict[str, Any]) -> Result:

@@ -15,6 +15,7 @@ from skybake.formats.hdr import RADIANCE_EFFICACY, read_header
 from skybake.formats.partial import is_utf8
 
 _BAND_ROWS = 256
+_FORMATS = {".exr": "openexr", ".hdr": "hdr"}
 
 
 def read_image(path: Path) -> tuple[npt.NDArray[np.float32], dict[str, Any]]:
@@ -57,14 +58,16 @@ def read_image(path: Path) -> tuple[npt.NDArray[np.float32], dict[str, Any]]:
 
 
 def read_whole_attributes(path: Path) -> dict[str, Any]:
-    """Return the attributes of an image, as `read_image` does, after reading all of its rows.
+    """Return the attributes of a map, as `read_image` does, after reading all of its rows.
 
     Raises
     ------
     InputError
-        If the file is missing or damaged.
+        If the file is missing, damaged, or not what its suffix says.
     """
     source = _open(path)
+    if source.format_name() != _FORMATS.get(path.suffix.lower()):
+        raise InputError(f"{path}: must be what its suffix says, got {source.format_name()}")
     if not _can_read_rows(source):
         raise InputError(f"{path}: must be whole, got {_first_line(source.geterror())}")
     source.close()

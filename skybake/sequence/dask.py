@@ -70,7 +70,10 @@ def dask_pool(plan: Plan, look: Look, address: str) -> Iterator[Run]:
     futures: dict[Any, Frame] = {}
     try:
         _check_workers(client, address)
-        planets = [client.scatter(planet, broadcast=True) for planet in plan.planets]
+        # Of many worlds each worker needs a few, and those come with their frames.
+        planets = list(plan.planets)
+        if len(planets) == 1:
+            planets = client.scatter(planets, broadcast=True)
         tables = client.scatter(_tables(plan), broadcast=True)
 
         def run(frames: Sequence[Frame]) -> Iterator[Done]:
@@ -105,7 +108,8 @@ def finish_on_worker(frame: Frame, planet: Planet, tables: Tables, look: Look) -
 
 def versions() -> dict[str, str]:
     """Return what a worker's pixels depend on beside the frame."""
-    ours = {"skybake": skybake.__version__, "python": platform.python_version()}
+    major, minor, _ = platform.python_version_tuple()
+    ours = {"skybake": skybake.__version__, "python": f"{major}.{minor}"}
     return ours | {name: version(name) for name in _PACKAGES}
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from skybake.baking.light import Light, light_from_attributes
+from skybake.baking.light import Light, attributes_from_light, light_from_attributes
 from skybake.baking.paths import map_paths
 from skybake.baking.recipe import HASH_ATTRIBUTE, recipe_hash
 from skybake.baking.scene import Scene
@@ -19,6 +19,7 @@ from skybake.baking.show import scene_ev, thumbnail
 from skybake.baking.write import bake_scene
 from skybake.colour.exposure import ev_from_luminance
 from skybake.errors import InputError
+from skybake.formats.partial import remove_leftovers
 from skybake.formats.reader import read_whole_attributes
 from skybake.preset import Planet
 from skybake.sequence.plan import Frame
@@ -114,8 +115,9 @@ def finish_frame(
             raise CancelledError
 
     stop_if_cancelled()
+    files = map_paths(frame.output, frame.settings)
     if light is None:
-        light = bake_scene(
+        baked = bake_scene(
             work.scene,
             frame.output,
             preview=frame.preview,
@@ -124,7 +126,11 @@ def finish_frame(
             attributes=frame.attributes,
             progress=stop_if_cancelled,
         )
-    files = map_paths(frame.output, frame.settings)
+        # As it will be when its files are found instead.
+        light = light_from_attributes(attributes_from_light(baked))
+    else:
+        for path in frame.files():
+            remove_leftovers(path)
     return Outcome(
         number=frame.number,
         is_new=is_new,

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import os
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from skybake.baking import MapSettings
+from skybake.baking.paths import map_paths
 from skybake.baking.write import check_targets
 from skybake.errors import OutputError
 from skybake.formats.spec import Attribute
@@ -44,6 +46,11 @@ class Frame:
     label: str | None = None
     attributes: Mapping[str, Attribute] = field(default_factory=dict)
 
+    def files(self) -> tuple[Path, ...]:
+        """Return the map, one file or six, and the preview if there is one."""
+        preview = () if self.preview is None else (self.preview,)
+        return (*map_paths(self.output, self.settings), *preview)
+
 
 @dataclass(frozen=True)
 class Plan:
@@ -69,20 +76,29 @@ class Plan:
         wanted = set(numbers)
         return Plan(self.planets, tuple(one for one in self.frames if one.number in wanted))
 
-    def check(self, view: str) -> None:
+    def check(self, view: str, others: Iterable[Path] = ()) -> None:
         """Raise what can be said of all targets before anything is computed.
+
+        Parameters
+        ----------
+        view : {"aces2", "aces1"}
+            Display transform of previews.
+        others : iterable of Path, optional
+            What else is written.
 
         Raises
         ------
         SkybakeError
-            If a file cannot be written under its name, or two frames share one.
+            If a file cannot be written under its name, or would be written twice.
         """
-        taken: set[Path] = set()
         for frame in self.frames:
             check_targets(frame.output, frame.settings, frame.preview, view)
-            if frame.output in taken:
-                raise OutputError(f"{frame.output}: must be the file of one frame, got two")
-            taken.add(frame.output)
+        taken: set[str] = set()
+        for path in (*(path for frame in self.frames for path in frame.files()), *others):
+            target = os.path.realpath(path)
+            if target in taken:
+                raise OutputError(f"{path}: must be written once, got the file of two")
+            taken.add(target)
 
     def highest_sun(self) -> Frame:
         """Frame with the highest sun; of several the first."""

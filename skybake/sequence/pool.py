@@ -58,4 +58,5 @@ def local_pool(plan: Plan, look: Look, workers: int | None = None) -> Iterator[R
         stop.set()
         threads.shutdown(wait=False, cancel_futures=True)
         # What is being written stops at its next band and takes its hidden folder along.
-        wait(pending, timeout=_ANSWER_WITHIN)
+        begun = [future for future in pending if not future.cancelled()]
+        wait(begun, timeout=_ANSWER_WITHIN)

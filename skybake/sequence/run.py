@@ -74,20 +74,22 @@ def bake_sequence(
     failures: dict[int, str] = {}
     waiting = plan.frames
     total = len(waiting)
+    done = 0
     for attempt in range(retries + 1):
         failed = []
         for frame, outcome in run(waiting):
+            message = ""
+            kind: Literal["baked", "skipped", "failed", "retried"]
             if isinstance(outcome, Outcome):
+                kind = "baked" if outcome.is_new else "skipped"
                 outcomes.append(outcome)
                 failures.pop(frame.number, None)
-                kind: Literal["baked", "skipped"] = "baked" if outcome.is_new else "skipped"
-                tell(Event(frame, kind, len(outcomes), total))
-                continue
-            failed.append(frame)
-            failures[frame.number] = message = _message(outcome)
-            is_last = attempt == retries
-            done = len(outcomes) + (len(failed) if is_last else 0)
-            tell(Event(frame, "failed" if is_last else "retried", done, total, message))
+            else:
+                kind = "failed" if attempt == retries else "retried"
+                failed.append(frame)
+                failures[frame.number] = message = _message(outcome)
+            done += kind != "retried"
+            tell(Event(frame, kind, done, total, message))
         waiting = tuple(sorted(failed, key=lambda frame: frame.number))
         if not waiting:
             break

@@ -25,7 +25,7 @@ def start(*arguments, code="from skybake.cli import run; run()", wrapper=(), **k
         [*wrapper, sys.executable, "-c", code, *map(str, arguments)],
         env=os.environ | {"PYTHONPATH": PACKAGES} | keywords.pop("env", {}),
         stdout=keywords.pop("stdout", subprocess.PIPE),
-        stderr=subprocess.PIPE,
+        stderr=keywords.pop("stderr", subprocess.PIPE),
         text=True,
         **keywords,
     )

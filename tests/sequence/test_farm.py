@@ -16,6 +16,8 @@ from openjd.model import (
 from skybake.errors import InputError, OutputError
 from skybake.sequence.farm import commands, write_openjd
 from skybake.sequence.frames import chunks, parse_frames
+from tests.cli.runs import listing, run
+from tests.sequence.runs import QUICK
 
 ARGUMENTS = [
     "skybake",
@@ -132,3 +134,20 @@ def test_a_folder_that_cannot_be_made_is_an_error_of_one_line(tmp_path):
     for folder in (tmp_path / "file", tmp_path / "absent" / "job"):
         with pytest.raises(OutputError, match="must be a folder, got"):
             write_openjd(folder, ARGUMENTS, (1,), 1, "sky")
+
+
+def test_the_tasks_of_openjd_bake_the_frames_and_tell_their_progress(tmp_path):
+    for name in ("maps", "session"):
+        (tmp_path / name).mkdir()
+    arguments = ("-o", "a.#.exr", "--frames", "1-5", "--emit-openjd", "../job", "--chunk-size", "3")
+    status, output, errors = run(*QUICK, *arguments, cwd=tmp_path / "maps")
+    assert (status, output, errors) == (0, "../job/template.json\n", "")
+    told = []
+    for program, *words in _tasks(tmp_path / "job" / "template.json"):
+        assert program == "skybake"
+        status, output, errors = run(*words, cwd=tmp_path / "session")
+        assert (status, errors) == (0, "")
+        told += [line.split()[1] for line in output.splitlines() if "openjd_progress" in line]
+    assert told == ["33.3", "66.7", "100.0", "50.0", "100.0"]
+    assert listing(tmp_path / "session") == []
+    assert listing(tmp_path / "maps") == [f"a.{i:04d}.exr" for i in range(1, 6)]
