@@ -8,6 +8,7 @@ from hypothesis import HealthCheck, given, note, settings
 from hypothesis import strategies as st
 
 from skybake.cli import main
+from skybake.preset import preset_text
 from tests.cli.runs import invoke, run
 
 # Long runs are no fault, so what decides on the cost of a run is never mutated.
@@ -151,3 +152,58 @@ def test_every_option_is_typed_in():
             plain = option.is_flag if isinstance(option, click.Option) else True
             chosen = isinstance(option.type, click.Choice)
             assert plain or chosen or option.name in known, (name, option.name)
+
+
+PRESETS = [preset_text(name).encode() for name in ("earth", "mars", "earth-hillaire2020")]
+PIECES = [
+    b"=",
+    b"[",
+    b"]]",
+    b"\xff",
+    b"\0",
+    b'"""',
+    b"{",
+    b"1e999",
+    b"nan",
+    b"-",
+    b"[a]\n",
+    b"\r",
+    b"#",
+]
+
+
+@st.composite
+def damaged_presets(draw):
+    """Bytes of a preset with some of them cut out, doubled or replaced."""
+    content = draw(st.sampled_from(PRESETS))
+    for _ in range(draw(st.integers(1, 3))):
+        first = draw(st.integers(0, len(content)))
+        last = draw(st.integers(first, min(len(content), first + 40)))
+        piece = st.one_of(st.sampled_from(PIECES), st.just(content[first:last] * 2), st.binary())
+        content = content[:first] + draw(piece) + content[last:]
+    return content
+
+
+def check_preset(folder, content):
+    (folder / "damaged.toml").write_bytes(content)
+    with chdir(folder):
+        result = invoke("presets", "check", "damaged.toml")
+    assert result.exception is None or isinstance(result.exception, SystemExit)
+    assert result.exit_code in {0, 1}
+    assert bool(result.exit_code) == bool(result.stdout == "")
+    lines = result.stderr.splitlines()
+    assert all(one.startswith("skybake: ") for one in lines)
+    assert lines or not result.exit_code
+
+
+@given(content=damaged_presets())
+@settings(max_examples=100, deadline=None, suppress_health_check=LENIENT)
+def test_any_bytes_of_a_preset_are_checked_or_refused_in_lines(folder, content):
+    check_preset(folder, content)
+
+
+@pytest.mark.nightly
+@given(content=damaged_presets())
+@settings(max_examples=10_000, deadline=None, suppress_health_check=LENIENT)
+def test_any_bytes_of_a_preset_are_checked_or_refused_in_lines_all_night(folder, content):
+    check_preset(folder, content)
