@@ -24,26 +24,24 @@ class Fans(NamedTuple):
     Attributes
     ----------
     rays : ndarray of float64, shape (ray, 4)
-        As for `trace`.
+        Radius of each ray's start [km], cosines of its zenith angle and of the sun's
+        there, and of the angle between ray and sun.
     first : ndarray of int64, shape (fan + 1,)
         First ray of each fan, and the end of the last.
-    axes : ndarray of float64, shape (fan, 4)
-        One ray of each fan with the sun in the zenith, where it casts no shadow: the
-        diffuse field knows the shadow already.
+    starts : ndarray of float64, shape (fan, 2)
+        What the rays of each fan share, as `trace` takes it.
     """
 
     rays: Array
     first: npt.NDArray[np.int64]
-    axes: Array
+    starts: Array
 
 
 def group_rays(rays: Array) -> Fans:
     """Find the fans among rays that are ordered by direction."""
     is_new = np.any(rays[1:, :2] != rays[:-1, :2], axis=1)
     first = np.concatenate([[0], np.flatnonzero(is_new) + 1, [len(rays)]]).astype(np.int64)
-    axes = rays[first[:-1]]
-    axes[:, 2], axes[:, 3] = 1.0, axes[:, 1]
-    return Fans(rays, first, axes)
+    return Fans(rays, first, np.ascontiguousarray(rays[first[:-1], :2]))
 
 
 @kernel
@@ -59,7 +57,7 @@ def add_diffuse(field, medium, fans, begin, end, samples, out):
     fans : Fans
         The rays.
     begin, end, samples
-        Fans, and the result of `trace` for their axes.
+        Fans, and the result of `trace` for their starts.
     out : ndarray of float32, shape (ray, wavelength)
         Receives radiance per unit irradiance. [sr⁻¹]
 
