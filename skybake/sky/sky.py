@@ -11,7 +11,7 @@ import numpy as np
 from skybake.errors import InputError
 from skybake.luts.atmosphere import Atmosphere, is_stored, load_atmosphere
 from skybake.luts.ray import RayLight, trace_rays
-from skybake.optics.lobes import Lobes, split_phase
+from skybake.optics.lobes import Lobes, pad_lobes, split_phase
 from skybake.optics.medium import Array, build_medium
 from skybake.optics.phase import eval_phase
 from skybake.optics.spectrum import star_irradiance
@@ -183,7 +183,7 @@ class Sky:
         mu = np.cos(theta)
         nu = mu * math.cos(sun_zenith) + np.sin(theta) * math.sin(sun_zenith) * np.cos(phi)
         light = self._light(mu.ravel(), nu.ravel())
-        lobes = self._lobes
+        lobes = pad_lobes(self._lobes)
         fold = np.einsum("cwq,wk->cwkq", lobes.weights, rgb_weights)
         table = np.tensordot(light.single, fold, axes=2)
         table[:, :, 0] += light.diffuse @ rgb_weights
