@@ -65,7 +65,7 @@ def gather_sunlit(medium, columns, ray, samples, first, last, length, out):
     """
     r, mu, mu_s, nu = ray[0], ray[1], ray[2], ray[3]
     dark_first, dark_last = shadow_interval(r, mu, mu_s, nu, medium.r_bottom, 0.0, length)
-    count = 0
+    count = np.int64(0)
     for n in range(first, last, 2):
         step = (samples.distance[n + 1] - samples.distance[n]) / (1.0 - 2.0 * GAUSS_LOW)
         start = samples.distance[n] - GAUSS_LOW * step

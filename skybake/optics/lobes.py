@@ -13,10 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from skybake.optics.medium import Array
-
-LANES = 4
-"""Kernels take lobes in multiples: what a vector loop leaves over is done by as many."""
+from skybake.optics.medium import LANES, Array
 
 TOLERANCE = 1.5e-3
 """Largest error of a phase function, relative to the rms of its group at that angle."""

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from skybake.optics.lobes import LANES, TOLERANCE, pad_lobes, split_phase
-from skybake.optics.medium import build_medium
+from skybake.optics.lobes import TOLERANCE, pad_lobes, split_phase
+from skybake.optics.medium import LANES, build_medium
 from skybake.optics.phase import scattering_angles
 from skybake.preset import load_preset
 from skybake.sky.sky import WAVELENGTHS
