@@ -156,7 +156,7 @@ def _seen_from(folder: Path, path: Path) -> str:
 
 def _label(frame: Frame) -> str:
     sun = f"sun {math.degrees(frame.settings.sun_elevation):.1f} deg"
-    time = frame.label or str(frame.number)
+    time = (frame.label or str(frame.number)).removesuffix(":00")
     if frame.label and "skybake:time" in frame.attributes:
         time = f"{datetime.fromisoformat(frame.label):%Y-%m-%d %H:%M}"
     return f"{time}  {sun}"

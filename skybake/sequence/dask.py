@@ -22,7 +22,10 @@ from skybake.sky.sky import Sky
 from skybake.transport.kernel import stay_in_thread
 
 CONNECT_WITHIN = 6
-"""Time after which a scheduler or its first worker counts as absent. [s]"""
+"""Time after which a scheduler counts as absent. [s]"""
+
+WORKER_WITHIN = 30
+"""The same of its first worker, which a cluster may only now be starting. [s]"""
 
 _PACKAGES = ("numpy", "numba", "OpenImageIO")
 
@@ -50,8 +53,8 @@ def dask_pool(plan: Plan, look: Look, address: str) -> Iterator[Run]:
 
     Notes
     -----
-    The world and the tables of its air are sent to each worker once, a frame is some
-    hundred bytes each way beside its thumbnail. A frame whose worker dies goes to
+    The world and the tables of its air, 8 MB, are sent to each worker once; a frame is
+    half a kilobyte each way beside its thumbnail. A frame whose worker dies goes to
     another one.
     """
     try:
@@ -115,10 +118,10 @@ def versions() -> dict[str, str]:
 
 def _check_workers(client: Any, address: str) -> None:
     try:
-        client.wait_for_workers(1, timeout=CONNECT_WITHIN)
+        client.wait_for_workers(1, timeout=WORKER_WITHIN)
     except TimeoutError as error:
         raise InputError(
-            f"dask: {address} must have a worker within {CONNECT_WITHIN} s, got none"
+            f"dask: {address} must have a worker within {WORKER_WITHIN} s, got none"
         ) from error
     ours = versions()
     for worker, theirs in client.run(versions, on_error="return").items():

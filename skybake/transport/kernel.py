@@ -16,6 +16,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import llvmlite.binding
 import numba
 from numba.core.caching import _Cache
 from numba.core.compiler import CompileResult
@@ -40,7 +41,7 @@ def kernel(function: Callable[..., Any]) -> Any:
     Kernels are serial and take a range of rows; `run_rows` gives each thread
     its ranges. Measured against ``parallel=True`` this halves the compile time
     and saves milliseconds a call, and the result has the same bits for any
-    number of threads.
+    number of threads. Other kernels cannot call it, see `inner_kernel`.
     """
     return _compile_later(function)
 
@@ -97,7 +98,7 @@ class _KernelCache(_Cache):
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep a compiled kernel; where that fails it serves this process only."""
         try:
-            write_sealed(self._path(sig, data.codegen), dumps(data._reduce()))
+            write_sealed(self._path(sig, data.codegen), dumps(_reduced(data)))
         except OSError:
             warn_of_full_disk(self._directory)
 
@@ -116,6 +117,24 @@ class _KernelCache(_Cache):
         digest = hashlib.sha256(version + function.__code__.co_code).hexdigest()[:16]
         name = re.sub(r"\W+", "_", function.__name__)
         return self._directory / f"{name}-{digest}{KERNEL_SUFFIX}"
+
+
+def _reduced(compiled: Any) -> tuple[Any, ...]:
+    """Parts of a compiled kernel that a file keeps.
+
+    Of a kernel that Python calls these are its machine code and its name. The code that
+    other kernels would be linked to, and the environments of what was compiled into it
+    (numba's own array functions, whose modules would be imported), take longer to load.
+    """
+    (name, kind, code), descriptor, *others, _ = compiled._reduce()
+    if kind != "object" or not compiled.library.codegen._engine.is_symbol_defined(
+        descriptor.llvm_cpython_wrapper_name
+    ):
+        whole: tuple[Any, ...] = compiled._reduce()
+        return whole
+    names = f'define void @"{descriptor.llvm_cpython_wrapper_name}"() {{ ret void }}'
+    stub = llvmlite.binding.parse_assembly(names).as_bitcode()
+    return (name, kind, (code[0], stub)), descriptor, *others, ()
 
 
 class _Beside:

@@ -172,7 +172,7 @@ def test_an_address_of_no_scheduler_is_one_line(tmp_path, address):
 
 IMPATIENT = """
 import skybake.sequence.dask
-skybake.sequence.dask.CONNECT_WITHIN = 1
+skybake.sequence.dask.WORKER_WITHIN = 1
 from skybake.cli import run
 run()
 """

@@ -3,14 +3,13 @@
 import os
 import signal
 import subprocess
-import sys
 import time
 
 import numpy as np
 import pytest
 
 from skybake.formats.reader import read_whole_attributes
-from tests.cli.runs import PACKAGES, listing, run, start
+from tests.cli.runs import installed, listing, run, start
 from tests.sequence.runs import QUICK, bake, contents, wait_for
 
 
@@ -183,18 +182,7 @@ def test_a_frame_that_fails_is_tried_again_and_does_not_stop_the_others(
     assert len(listing(tmp_path)) == 9
 
 
-@pytest.fixture
-def with_program(tmp_path):
-    """Environment in which a shell finds skybake, as an installation puts it."""
-    programs = tmp_path / "bin"
-    programs.mkdir()
-    program = programs / "skybake"
-    program.write_text(f'#!/bin/sh\nexec {sys.executable} -m skybake "$@"\n')
-    program.chmod(0o755)
-    return os.environ | {"PATH": f"{programs}:{os.environ['PATH']}", "PYTHONPATH": PACKAGES}
-
-
-def test_one_worker_two_workers_and_emitted_commands_make_the_same_bytes(tmp_path, with_program):
+def test_one_worker_two_workers_and_emitted_commands_make_the_same_bytes(tmp_path):
     arguments = ("--frames", "-1-2", "--preview", "--set", "aerosol.optical_depth=0.1..0.3")
     folders = {name: tmp_path / name for name in ("one", "two", "shell", "elsewhere")}
     for folder in folders.values():
@@ -207,7 +195,7 @@ def test_one_worker_two_workers_and_emitted_commands_make_the_same_bytes(tmp_pat
     shell = subprocess.run(
         ["sh", "-e"],
         input=output,
-        env=with_program,
+        env=installed(tmp_path / "bin"),
         cwd=folders["elsewhere"],
         text=True,
         check=True,

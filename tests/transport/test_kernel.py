@@ -1,9 +1,12 @@
+import ast
 import threading
+from pathlib import Path
 
 import numba
 import numpy as np
 import pytest
 
+import skybake
 from skybake.transport import kernel as kernels
 from skybake.transport.kernel import run_rows, thread_count
 
@@ -46,3 +49,28 @@ def test_cache_of_other_users_of_numba_stays_where_it_was():
     before = numba.config.CACHE_DIR
     kernels.kernel(lambda x: x)
     assert before == numba.config.CACHE_DIR
+
+
+def decorated_functions():
+    """Functions of the package that are kernels: their nodes by the kind of kernel."""
+    found = {"kernel": {}, "inner_kernel": {}}
+    for path in Path(skybake.__file__).parent.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.FunctionDef):
+                for decorator in node.decorator_list:
+                    if isinstance(decorator, ast.Name) and decorator.id in found:
+                        found[decorator.id][node.name] = node
+    return found
+
+
+def test_kernels_that_python_calls_are_called_by_no_kernel():
+    """What is kept of them on disk cannot be linked to."""
+    found = decorated_functions()
+    assert len(found["kernel"]) > 10
+    for name, node in (found["kernel"] | found["inner_kernel"]).items():
+        calls = {
+            one.func.id
+            for one in ast.walk(node)
+            if isinstance(one, ast.Call) and isinstance(one.func, ast.Name)
+        }
+        assert not calls & found["kernel"].keys(), name
