@@ -83,16 +83,16 @@ def emit(context: click.Context, numbers: Sequence[int]) -> bool:
     if options["only"] is not None:
         numbers = [number for number in numbers if number in set(options["only"])]
     given = arguments(context)
-    if options["emit_commands"]:
-        for line in farm.commands(given, frames.chunks(numbers, options["chunk_size"])):
-            click.echo(line)
+    lines = farm.commands(given, frames.chunks(numbers, options["chunk_size"]))
     if options["emit_openjd"] is not None:
-        given.append("--progress=openjd")
         name = Path(options["output"] or options["preset"]).name
-        folder = options["emit_openjd"]
-        template = farm.write_openjd(folder, given, numbers, options["chunk_size"], name)
+        words = [*given, "--progress=openjd"]
+        size, folder = options["chunk_size"], options["emit_openjd"]
+        template = farm.write_openjd(folder, words, numbers, size, name)
         if not options["emit_commands"]:
-            click.echo(template)
+            lines = [str(template)]
+    for line in lines:
+        click.echo(line)
     return True
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from skybake.commands import maps, moment, parameters, report, request, world
+from skybake.commands.memory import check_memory
 from skybake.commands.place import place_options
 
 
@@ -69,6 +70,7 @@ def render(**options: Any) -> None:
       skybake render --preset mars --site gale --ls 180 --time 16:30
       skybake render --projection cubemap --size 512 --colorspace acescg --units nits
     """
+    check_memory()
     started = time.perf_counter()
     context = click.get_current_context()
     request.check_together(context)

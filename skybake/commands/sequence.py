@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from skybake.commands import course, emit, maps, parameters, progress, report, request, world
+from skybake.commands.memory import check_memory
 from skybake.commands.place import place_options
 from skybake.errors import SkybakeError
 
@@ -200,6 +201,7 @@ def sequence(**options: Any) -> None:
 
     Exit status: 0 done, 1 failed, 2 wrong usage, 3 some frames failed, 130 interrupted.
     """
+    check_memory()
     started = time.perf_counter()
     context = click.get_current_context()
     request.check_together(context)

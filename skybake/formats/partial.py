@@ -151,7 +151,19 @@ def check_target(path: Path) -> None:
         If a file cannot be written under that name.
     """
     with _faults_of(path):
-        _check(path, Path(os.path.realpath(path)))
+        target = Path(os.path.realpath(path))
+        if not is_utf8(target):
+            raise OutputError(f"{path}: must be UTF-8, got bytes that are not")
+        _check(path, target)
+
+
+def is_utf8(path: Path) -> bool:
+    """Whether libraries that take UTF-8 only can open a path."""
+    try:
+        str(path).encode()
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 @contextmanager

@@ -12,6 +12,7 @@ import OpenImageIO
 
 from skybake.errors import InputError
 from skybake.formats.hdr import RADIANCE_EFFICACY, read_header
+from skybake.formats.partial import is_utf8
 
 _BAND_ROWS = 256
 _FORMATS = {".exr": "openexr", ".hdr": "hdr"}
@@ -87,6 +88,8 @@ def _can_read_rows(source: OpenImageIO.ImageInput) -> bool:
 def _open(path: Path) -> OpenImageIO.ImageInput:
     if not path.is_file():
         raise InputError(f"{path}: must be an image file, got {_what_instead(path)}")
+    if not is_utf8(path):
+        raise InputError(f"{path}: must be UTF-8, got bytes that are not")
     source = OpenImageIO.ImageInput.open(str(path))
     if source is None:
         raise InputError(f"{path}: must be an image, got {_first_line(OpenImageIO.geterror())}")

@@ -152,12 +152,11 @@ def project(
     field : DiffuseField
         Receives the moments.
     """
-    order = field.harmonics.order
     polar = np.empty((grid.mu.shape[1], field.harmonics.degree.size))
     for a, mu in enumerate(grid.mu[i]):
         fill_harmonics(field.harmonics, mu, polar[a])
-    m = np.concatenate([np.full(order + 1 - m, m) for m in range(order + 1)])
-    around = 2.0 * math.pi / grid.azimuth.size * np.cos(np.outer(m, grid.azimuth))
+    around = np.cos(np.outer(field.harmonics.azimuthal, grid.azimuth))
+    around *= 2.0 * math.pi / grid.azimuth.size
     basis = (polar * grid.weight[i][:, None]).T[:, :, None] * around[:, None, :]
     moments = np.tensordot(basis, radiance, axes=([1, 2], [0, 2]))
     field.radiance[i] = moments.transpose(1, 0, 2)

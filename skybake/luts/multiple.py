@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from skybake.luts.field import altitude_weight, fill_ground_irradiance, sun_weights
 from skybake.luts.harmonics import fill_harmonics
-from skybake.optics.medium import LANES, Array
+from skybake.optics.medium import Array
 from skybake.transport.geometry import radius_at
 from skybake.transport.kernel import inner_kernel, kernel
 
@@ -24,26 +24,24 @@ class Fans(NamedTuple):
     Attributes
     ----------
     rays : ndarray of float64, shape (ray, 4)
-        As for `trace`.
+        Radius of each ray's start [km], cosines of its zenith angle and of the sun's
+        there, and of the angle between ray and sun.
     first : ndarray of int64, shape (fan + 1,)
         First ray of each fan, and the end of the last.
-    axes : ndarray of float64, shape (fan, 4)
-        One ray of each fan with the sun in the zenith, where it casts no shadow: the
-        diffuse field knows the shadow already.
+    starts : ndarray of float64, shape (fan, 2)
+        What the rays of each fan share, as `trace` takes it.
     """
 
     rays: Array
     first: npt.NDArray[np.int64]
-    axes: Array
+    starts: Array
 
 
 def group_rays(rays: Array) -> Fans:
     """Find the fans among rays that are ordered by direction."""
     is_new = np.any(rays[1:, :2] != rays[:-1, :2], axis=1)
     first = np.concatenate([[0], np.flatnonzero(is_new) + 1, [len(rays)]]).astype(np.int64)
-    axes = rays[first[:-1]]
-    axes[:, 2], axes[:, 3] = 1.0, axes[:, 1]
-    return Fans(rays, first, axes)
+    return Fans(rays, first, np.ascontiguousarray(rays[first[:-1], :2]))
 
 
 @kernel
@@ -55,11 +53,11 @@ def add_diffuse(field, medium, fans, begin, end, samples, out):
     field : DiffuseField
         The light to be scattered.
     medium : Medium
-        The atmosphere, of a multiple of `LANES` wavelengths.
+        The atmosphere.
     fans : Fans
         The rays.
     begin, end, samples
-        Fans, and the result of `trace` for their axes.
+        Fans, and the result of `trace` for their starts.
     out : ndarray of float32, shape (ray, wavelength)
         Receives radiance per unit irradiance. [sr⁻¹]
 
@@ -69,30 +67,35 @@ def add_diffuse(field, medium, fans, begin, end, samples, out):
     at each node of the sun's angle that any of them needs; a ray then sums orders m.
     """
     order, wavelengths = field.harmonics.order, out.shape[1]
-    rays, widest = fans.rays, 0
+    altitudes, suns, harmonics = field.radiance.shape[:3]
+    radiance = field.radiance.reshape((altitudes, suns, harmonics * wavelengths))
+    widest = 0
     for fan in range(begin, end):
         widest = max(widest, fans.first[fan + 1] - fans.first[fan])
     node, weights, cosine = np.empty(widest, np.int64), np.empty((widest, 4)), np.empty(widest)
-    fourier = np.empty((field.sun_angle.size, (order + 1) * wavelengths), np.float32)
+    fourier = np.empty((suns, (order + 1) * wavelengths), np.float32)
+    series = np.empty((order + 1) * wavelengths, np.float32)
+    harmonic, factor = np.empty(harmonics), np.empty(harmonics * wavelengths, np.float32)
+    weight = np.empty(wavelengths, np.float32)
     scattering = np.empty((order + 1, wavelengths), np.float32)
-    harmonic = np.empty(field.harmonics.degree.size)
-    whole, sky = np.empty(wavelengths), np.empty(wavelengths)
+    negligible = np.empty(wavelengths, np.float32)
+    sky = np.empty(wavelengths)
     for fan in range(begin, end):
         i, count = fans.first[fan], fans.first[fan + 1] - fans.first[fan]
-        r, mu = rays[i, 0], rays[i, 1]
+        r, mu = fans.starts[fan, 0], fans.starts[fan, 1]
         first = samples.first[fan - begin]
         last = first + samples.number[fan - begin]
         for k in range(wavelengths):
-            whole[k] = 0.0
+            negligible[k] = 0.0
         for n in range(first, last, 2):
-            _fill_scattering(field, samples, n, np.int64(1), scattering)
+            _fill_scattering(field, samples, n, np.int64(1), weight, scattering)
             for k in range(wavelengths):
-                whole[k] += scattering[0, k]
+                negligible[k] += np.float32(NEGLIGIBLE) * scattering[0, k]
         # The field is smooth within a step, so that its two samples share a lookup where
         # the middle of what they scatter lies.
         for n in range(first, last, 2):
-            _fill_scattering(field, samples, n, order + 1, scattering)
-            degrees = _count_degrees(scattering, whole)
+            _fill_scattering(field, samples, n, order + 1, weight, scattering)
+            degrees = _count_degrees(scattering, negligible)
             if degrees == 0:
                 continue
             share = _second_share(field, samples, n)
@@ -100,17 +103,20 @@ def add_diffuse(field, medium, fans, begin, end, samples, out):
             radius = radius_at(r, mu, t)
             mu_here = min(max((r * mu + t) / radius, -1.0), 1.0)
             least, most = _fill_suns(
-                field, rays, i, count, t, radius, mu_here, node, weights, cosine
+                field, fans.rays, i, count, t, radius, mu_here, node, weights, cosine
             )
             fill_harmonics(field.harmonics, mu_here, harmonic)
+            _fill_factors(harmonic, scattering, degrees, factor)
             low, u = altitude_weight(field, radius - medium.r_bottom)
-            _sum_degrees(field, low, u, least, most, harmonic, scattering, degrees, fourier)
+            for j in range(least, most):
+                below, above = radiance[low, j], radiance[low + 1, j]
+                _sum_degrees(below, above, u, factor, degrees, wavelengths, fourier[j])
             for q in range(count):
-                _add_orders(fourier, node[q], weights[q], cosine[q], degrees, out[i + q])
+                _add_orders(fourier, node[q], weights[q], cosine[q], degrees, series, out[i + q])
         if samples.hits_ground[fan - begin]:
             length = samples.length[fan - begin]
             for q in range(count):
-                mu_s = (r * rays[i + q, 2] + length * rays[i + q, 3]) / medium.r_bottom
+                mu_s = (r * fans.rays[i + q, 2] + length * fans.rays[i + q, 3]) / medium.r_bottom
                 fill_ground_irradiance(field, mu_s, weights[q], sky)
                 for k in range(wavelengths):
                     reflected = medium.ground_albedo[k] / math.pi * sky[k]
@@ -118,7 +124,7 @@ def add_diffuse(field, medium, fans, begin, end, samples, out):
 
 
 @inner_kernel
-def _fill_scattering(field, samples, n, degrees, out):
+def _fill_scattering(field, samples, n, degrees, weight, out):
     """Write weight * scattering coefficient * chi_l of a step's samples, (degree, wavelength)."""
     for degree in range(degrees):
         for k in range(out.shape[1]):
@@ -127,10 +133,11 @@ def _fill_scattering(field, samples, n, degrees, out):
         low, high = samples.density[n, c], samples.density[n + 1, c]
         if low + high == 0.0:
             continue
+        for k in range(weight.size):
+            weight[k] = low * samples.weight[n, k] + high * samples.weight[n + 1, k]
         for degree in range(degrees):
-            for k in range(out.shape[1]):
-                weight = low * samples.weight[n, k] + high * samples.weight[n + 1, k]
-                out[degree, k] += field.source[c, degree, k] * weight
+            for k in range(weight.size):
+                out[degree, k] += np.float32(field.source[c, degree, k]) * weight[k]
 
 
 @inner_kernel
@@ -146,12 +153,14 @@ def _second_share(field, samples, n):
 
 
 @inner_kernel
-def _count_degrees(scattering, whole):
+def _count_degrees(scattering, negligible):
     """Orders l of a sample that matter beside what all samples of the ray scatter."""
     for degree in range(scattering.shape[0] - 1, -1, -1):
-        for k in range(whole.size):
-            if abs(scattering[degree, k]) > NEGLIGIBLE * whole[k]:
-                return degree + 1
+        needed = 0
+        for k in range(negligible.size):
+            needed += abs(scattering[degree, k]) > negligible[k]
+        if needed > 0:
+            return degree + 1
     return 0
 
 
@@ -171,45 +180,46 @@ def _fill_suns(field, rays, first, count, t, radius, mu_here, node, weights, cos
 
 
 @inner_kernel
-def _sum_degrees(field, low, u, least, most, harmonic, scattering, degrees, out):
-    """Sum over l of the scattered moments at one altitude, shape (sun, m * wavelength)."""
-    order = field.harmonics.order
+def _fill_factors(harmonic, scattering, degrees, out):
+    """Write harmonics times what their degree scatters, flat as the moments of a field."""
     wavelengths = scattering.shape[1]
-    upper = np.float32(u)
-    for j in range(least, most):
-        p = 0
-        for m in range(degrees):
-            for block in range(0, wavelengths, LANES):
-                for k in range(block, block + LANES):
-                    out[j, m * wavelengths + k] = 0.0
-            for degree in range(m, degrees):
-                factor = np.float32(harmonic[p])
-                for block in range(0, wavelengths, LANES):
-                    for k in range(block, block + LANES):
-                        below = field.radiance[low, j, p, k]
-                        above = field.radiance[low + 1, j, p, k]
-                        out[j, m * wavelengths + k] += (
-                            factor * scattering[degree, k] * (below + upper * (above - below))
-                        )
-                p += 1
-            p += order + 1 - degrees
+    p = 0
+    for degree in range(degrees):
+        for _ in range(degree + 1):
+            value, here = np.float32(harmonic[p]), out[p * wavelengths : (p + 1) * wavelengths]
+            for k in range(here.size):
+                here[k] = value * scattering[degree, k]
+            p += 1
 
 
 @inner_kernel
-def _add_orders(fourier, node, weights, cosine, degrees, out):
+def _sum_degrees(below, above, u, factor, degrees, wavelengths, out):
+    """Sum over l of the scattered moments between two altitudes, flat by m and wavelength."""
+    upper = np.float32(u)
+    for q in range(degrees * wavelengths):
+        out[q] = 0.0
+    first = 0
+    for degree in range(degrees):
+        length = (degree + 1) * wavelengths
+        low, high = below[first : first + length], above[first : first + length]
+        scale = factor[first : first + length]
+        for q in range(length):
+            out[q] += scale[q] * (low[q] + upper * (high[q] - low[q]))
+        first += length
+
+
+@inner_kernel
+def _add_orders(fourier, node, weights, cosine, degrees, series, out):
     """Add a Fourier series in azimuth, interpolated between four sun angles."""
     a, b = np.float32(weights[0]), np.float32(weights[1])
     c, d = np.float32(weights[2]), np.float32(weights[3])
-    for block in range(0, out.size, LANES):
-        before, now = np.float32(cosine), np.float32(1.0)
-        twice = np.float32(2.0 * cosine)
-        for first in range(block, degrees * out.size, out.size):
-            for k in range(LANES):
-                term = (
-                    a * fourier[node, first + k]
-                    + b * fourier[node + 1, first + k]
-                    + c * fourier[node + 2, first + k]
-                    + d * fourier[node + 3, first + k]
-                )
-                out[block + k] += now * term
-            before, now = now, twice * now - before
+    at_a, at_b, at_c, at_d = fourier[node], fourier[node + 1], fourier[node + 2], fourier[node + 3]
+    for q in range(degrees * out.size):
+        series[q] = a * at_a[q] + b * at_b[q] + c * at_c[q] + d * at_d[q]
+    before, now = np.float32(cosine), np.float32(1.0)
+    twice = np.float32(2.0 * cosine)
+    for m in range(degrees):
+        term = series[m * out.size : (m + 1) * out.size]
+        for k in range(out.size):
+            out[k] += now * term[k]
+        before, now = now, twice * now - before

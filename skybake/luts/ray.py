@@ -68,33 +68,24 @@ def trace_rays(
     Notes
     -----
     Neighbours with the same r and mu share samples, so rays are best ordered by
-    direction first. Of sunlight that is scattered once they do so only where
-    neither meets the planet's shadow.
+    direction first.
     """
     channels, wavelengths = cut.phase.shape[0], cut.phase.shape[2]
     single = np.zeros((r.size, channels, wavelengths))
     diffuse = np.zeros((r.size, wavelengths), np.float32)
-    rays = np.stack([r, mu, mu_s, nu], axis=1)
+    fans = group_rays(np.stack([r, mu, mu_s, nu], axis=1))
 
-    def scatter_once(begin: int, end: int) -> None:
+    def work(begin: int, end: int) -> None:
         samples = allocate_samples(cut.medium)
         while begin < end:
-            stop = trace(cut.medium, shells, max_arc, rays, begin, end, samples)
-            batch = rays, begin, stop, samples
+            stop = trace(cut.medium, shells, max_arc, fans.starts, begin, end, samples)
+            batch = fans, begin, stop, samples
             add_single_scattering(cut, PEAK_NODES, columns, *batch, single)
             add_sunlit_ground(cut.medium, columns, *batch, diffuse)
+            # A field on less than two altitudes is none.
+            if field.altitude.size > 1:
+                add_diffuse(field, cut.medium, *batch, diffuse)
             begin = stop
 
-    def scatter_field(begin: int, end: int) -> None:
-        samples = allocate_samples(cut.medium)
-        while begin < end:
-            stop = trace(cut.medium, shells, max_arc, fans.axes, begin, end, samples)
-            add_diffuse(field, cut.medium, fans, begin, stop, samples, diffuse)
-            begin = stop
-
-    run_rows(r.size, scatter_once, chunk=max(64, r.size // 64))
-    # A field on less than two altitudes is none.
-    if field.altitude.size > 1:
-        fans = group_rays(rays)
-        run_rows(len(fans.axes), scatter_field, chunk=max(1, len(fans.axes) // 32))
+    run_rows(len(fans.starts), work, chunk=max(1, len(fans.starts) // 32))
     return RayLight(single, diffuse)

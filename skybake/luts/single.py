@@ -6,13 +6,14 @@ import math
 
 import numpy as np
 
+from skybake.luts.sunlit import SPARE, Sunlit, gather_sunlit
 from skybake.luts.transmittance import fill_sun_column, fill_transmittance
-from skybake.transport.exponential import fast_exp
+from skybake.transport.exponential import fast_exp32
 from skybake.transport.kernel import inner_kernel, kernel
 
 
 @kernel
-def add_single_scattering(cut, nodes, columns, rays, begin, end, samples, out):
+def add_single_scattering(cut, nodes, columns, fans, begin, end, samples, out):
     """Add the sunlight that reaches the samples of rays, before any phase function.
 
     Parameters
@@ -23,100 +24,150 @@ def add_single_scattering(cut, nodes, columns, rays, begin, end, samples, out):
         `PEAK_NODES`.
     columns : ndarray
         Table of `build_columns`.
-    rays, begin, end, samples
-        Arguments and result of `trace`, in the truncated medium; `end` is the ray
-        after the last that was traced.
+    fans : Fans
+        The rays.
+    begin, end, samples
+        Fans, and the result of `trace` for their starts, in the truncated medium.
     out : ndarray of float64, shape (ray, channel, wavelength)
         Receives, per unit irradiance, what the phase functions of the channels
         multiply; see `skybake.optics.legendre.Truncation`.
     """
-    medium = cut.medium
-    constituents, wavelengths = medium.extinction.shape
-    column = np.empty(constituents)
-    light, peak, filled = np.empty(wavelengths), np.empty(wavelengths), np.empty(wavelengths)
-    for i in range(begin, end):
-        r, mu_s, nu = rays[i, 0], rays[i, 2], rays[i, 3]
-        first = samples.first[i - begin]
-        for n in range(first, first + samples.number[i - begin]):
-            if not samples.lit[n]:
-                continue
-            mu_s_here = (r * mu_s + samples.distance[n] * nu) / samples.radius[n]
-            if not fill_sun_column(
-                columns, medium.r_bottom, medium.r_top, samples.radius[n], mu_s_here, column
-            ):
-                continue
-            fill_transmittance(medium.extinction, column, light)
+    constituents, wavelengths = cut.medium.extinction.shape
+    most = np.int64(SPARE)
+    for fan in range(end - begin):
+        most = max(most, samples.number[fan] + SPARE)
+    lit = Sunlit(
+        np.empty((constituents, most), np.float32),
+        np.empty((constituents, most), np.float32),
+        np.empty((constituents, most), np.float32),
+        np.empty((wavelengths, most), np.float32),
+        np.empty(constituents),
+        np.empty(constituents),
+    )
+    depth, light = np.empty(most, np.float32), np.empty(most, np.float32)
+    filled = np.empty(most, np.float32)
+    for fan in range(begin, end):
+        first, length = samples.first[fan - begin], samples.length[fan - begin]
+        last = first + samples.number[fan - begin]
+        for i in range(fans.first[fan], fans.first[fan + 1]):
+            count = gather_sunlit(
+                cut.medium, columns, fans.rays[i], samples, first, last, length, lit
+            )
             for k in range(wavelengths):
-                light[k] *= samples.weight[n, k]
-            for c in range(constituents):
-                density = samples.density[n, c]
-                for k in range(wavelengths):
-                    out[i, c, k] += density * medium.scattering[c, k] * light[k]
-            if cut.peaked.size > 0:
-                _split_peak(cut, column, samples, n, light, peak, filled)
-                _add_peak(cut, nodes, samples, n, peak, filled, out[i])
+                _fill_light(cut, k, count, lit, depth, light)
+                for c in range(constituents):
+                    scattering = cut.medium.scattering[c, k]
+                    out[i, c, k] += scattering * _sum_products(count, lit.density[c], light)
+                if cut.peaked.size > 0:
+                    _split_peak(cut, k, count, lit, depth, light, filled)
+                    _add_peak(cut, nodes, k, count, lit, light, filled, out[i])
 
 
 @inner_kernel
-def _split_peak(cut, column, samples, n, light, peak, filled):
-    """Light that was scattered within peaks only, and how far they have filled, 1 - exp(-f y)."""
-    for k in range(light.size):
-        filled[k] = 0.0
-        peak[k] = 0.0
+def _fill_light(cut, k, count, lit, depth, light):
+    """Write the share of sunlight that arrives by way of each sample times its weight."""
+    for n in range(count):
+        depth[n] = np.float32(0.0)
+    for c in range(lit.sunward.shape[0]):
+        _add_scaled(count, cut.medium.extinction[c, k], lit.sunward[c], depth)
+    weight = lit.weight[k]
+    for n in range(count):
+        light[n] = weight[n] * fast_exp32(-depth[n])
+
+
+@inner_kernel
+def _split_peak(cut, k, count, lit, depth, light, filled):
+    """Keep of the light what was scattered within peaks only; how far they have filled.
+
+    That is 1 - exp(-f y), y the depth of peak scattering between sun and sample.
+    """
+    for n in range(count):
+        depth[n] = np.float32(0.0)
+        filled[n] = np.float32(0.0)
     for c in cut.peaked:
-        both = column[c] + samples.column_to[n, c]
-        for k in range(light.size):
-            filled[k] += cut.scattering[c, k] * column[c]
-            peak[k] -= cut.fraction[c, k] * cut.scattering[c, k] * both
-    for k in range(light.size):
-        depth = cut.mixture[k] * filled[k]
-        peak[k] = light[k] * fast_exp(peak[k] + depth)
-        filled[k] = 1.0 - fast_exp(-depth)
+        gain = cut.mixture[k] * cut.scattering[c, k]
+        loss = cut.fraction[c, k] * cut.scattering[c, k]
+        _add_scaled(count, gain, lit.sunward[c], filled)
+        _add_scaled(count, loss - gain, lit.sunward[c], depth)
+        _add_scaled(count, loss, lit.backward[c], depth)
+    for n in range(count):
+        light[n] *= fast_exp32(-depth[n])
+        filled[n] = np.float32(1.0) - fast_exp32(-filled[n])
 
 
 @inner_kernel
-def _add_peak(cut, nodes, samples, n, peak, filled, out):
-    """Share the peak's light among the channels of the two nodes around `filled`."""
+def _add_peak(cut, nodes, k, count, lit, light, filled, out):
+    """Share each sample's light between the channels of the two nodes around `filled`."""
     constituents = cut.fraction.shape[0]
-    least, most = filled[0], filled[0]
-    for k in range(1, filled.size):
-        least, most = min(least, filled[k]), max(most, filled[k])
-    for i in range(nodes.size):
-        below = nodes[i] - nodes[i - 1] if i > 0 else 1.0
-        above = nodes[i + 1] - nodes[i] if i + 1 < nodes.size else 1.0
-        if most < nodes[i] - below or least > nodes[i] + above:
-            continue
-        for j in range(cut.peaked.size):
-            c = cut.peaked[j]
-            channel = constituents + j * nodes.size + i
-            density = samples.density[n, c]
-            for k in range(peak.size):
-                offset = filled[k] - nodes[i]
-                hat = max(1.0 - max(offset / above, -offset / below), 0.0)
-                out[channel, k] += density * cut.scattering[c, k] * hat * peak[k]
+    for j in range(cut.peaked.size):
+        c = cut.peaked[j]
+        channel = constituents + j * nodes.size
+        # Light counts for all nodes below it and, in part, for the next.
+        total = cut.scattering[c, k] * _sum_products(count, lit.density[c], light)
+        for i in range(1, nodes.size):
+            beyond = cut.scattering[c, k] * _sum_ramps(
+                count, lit.density[c], light, filled, nodes[i - 1], nodes[i]
+            )
+            out[channel, k] += total - beyond
+            total = beyond
+            channel += 1
+            if total == 0.0:
+                break
+        out[channel, k] += total
+
+
+@inner_kernel
+def _add_scaled(count, factor, values, out):
+    single = np.float32(factor)
+    for n in range(count):
+        out[n] += single * values[n]
+
+
+@inner_kernel
+def _sum_products(count, a, b):
+    total = np.float32(0.0)
+    for n in range(count):
+        total += a[n] * b[n]
+    return total
+
+
+@inner_kernel
+def _sum_ramps(count, a, b, x, low, high):
+    """Sum of products weighted 0 where `x` is below `low`, 1 above `high`, linear between."""
+    slope, shift = np.float32(1.0 / (high - low)), np.float32(low / (high - low))
+    total = np.float32(0.0)
+    for n in range(count):
+        total += a[n] * b[n] * min(max(slope * x[n] - shift, np.float32(0.0)), np.float32(1.0))
+    return total
 
 
 @kernel
-def add_sunlit_ground(medium, columns, rays, begin, end, samples, out):
+def add_sunlit_ground(medium, columns, fans, begin, end, samples, out):
     """Add the ground at the end of rays as the sun alone lights it.
 
     Parameters
     ----------
     medium, columns : Medium, ndarray
         The atmosphere and its table of `build_columns`.
-    rays, begin, end, samples
-        Arguments and result of `trace`.
+    fans, begin, end, samples
+        As for `add_single_scattering`.
     out : ndarray of float32, shape (ray, wavelength)
         Receives the radiance per unit irradiance. [sr⁻¹]
     """
     column, light = np.empty(medium.extinction.shape[0]), np.empty(out.shape[1])
-    for i in range(begin, end):
-        ray = i - begin
-        mu_s = (rays[i, 0] * rays[i, 2] + samples.length[ray] * rays[i, 3]) / medium.r_bottom
-        if not samples.hits_ground[ray] or mu_s <= 0.0:
+    for fan in range(begin, end):
+        at = fan - begin
+        if not samples.hits_ground[at]:
             continue
-        fill_sun_column(columns, medium.r_bottom, medium.r_top, medium.r_bottom, mu_s, column)
-        fill_transmittance(medium.extinction, column, light)
-        for k in range(light.size):
-            reflected = medium.ground_albedo[k] / math.pi * mu_s * light[k]
-            out[i, k] += samples.transmittance[ray, k] * reflected
+        for i in range(fans.first[fan], fans.first[fan + 1]):
+            r, mu_s, nu = fans.rays[i, 0], fans.rays[i, 2], fans.rays[i, 3]
+            mu_s_there = (r * mu_s + samples.length[at] * nu) / medium.r_bottom
+            if mu_s_there <= 0.0:
+                continue
+            fill_sun_column(
+                columns, medium.r_bottom, medium.r_top, medium.r_bottom, mu_s_there, column
+            )
+            fill_transmittance(medium.extinction, column, light)
+            for k in range(light.size):
+                reflected = medium.ground_albedo[k] / math.pi * mu_s_there * light[k]
+                out[i, k] += samples.transmittance[at, k] * reflected

@@ -218,10 +218,10 @@ def _trace_grid(cut: Truncation, grid: Grid) -> list[Batch]:
     batches = []
     for node in range(grid.altitude.size):
         fans = group_rays(_rays_at(cut, grid, node))
-        begin, end = 0, len(fans.axes)
+        begin, end = 0, len(fans.starts)
         while begin < end:
             samples = allocate_samples(cut.medium)
-            stop = trace(cut.medium, shells, ARC, fans.axes, begin, end, samples)
+            stop = trace(cut.medium, shells, ARC, fans.starts, begin, end, samples)
             batches.append(Batch(node, fans, begin, stop, samples))
             begin = stop
     return batches

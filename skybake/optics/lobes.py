@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from skybake.optics.medium import Array
+from skybake.optics.medium import LANES, Array
 
 TOLERANCE = 1.5e-3
 """Largest error of a phase function, relative to the rms of its group at that angle."""
@@ -80,3 +80,12 @@ def split_phase(
         block = basis.reshape(len(group), wavelengths, -1)
         weights[list(group), :, first : first + block.shape[2]] = block
     return Lobes(np.concatenate(curves), weights)
+
+
+def pad_lobes(lobes: Lobes) -> Lobes:
+    """Add curves of zeros until their number is a multiple of `LANES`."""
+    missing = -len(lobes.curves) % LANES
+    return Lobes(
+        np.pad(lobes.curves, ((0, missing), (0, 0))),
+        np.pad(lobes.weights, ((0, 0), (0, 0), (0, missing))),
+    )

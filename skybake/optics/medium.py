@@ -19,8 +19,9 @@ Array = npt.NDArray[np.float64]
 ALTITUDE_NODES = 1024
 """Nodes of `Medium.density`; linear interpolation of exp(-h/1.2 km) is then good to 3e-5."""
 
-LANES = 16
-"""Kernels take wavelengths in multiples: loops of known length become plain vector code."""
+LANES = 4
+"""Kernels take wavelengths, and the lobes of a sky, in multiples: what a loop over them leaves
+beside whole vectors is done by as many."""
 
 
 class Medium(NamedTuple):

@@ -76,46 +76,49 @@ def _fill_latitude(view, side, zenith, j_first, j_last, weights, out):
     table = view.table[side]
     for row in range(j_first, j_last):
         j = azimuths - 1 - abs(azimuths - 1 - abs(row - 1))
+        at_a, at_b, at_c, at_d = table[i, j], table[i + 1, j], table[i + 2, j], table[i + 3, j]
+        here = out[row]
         for k in range(channels):
-            out[row, k] = (
-                a * table[i, j, k]
-                + b * table[i + 1, j, k]
-                + c * table[i + 2, j, k]
-                + d * table[i + 3, j, k]
-            )
+            here[k] = a * at_a[k] + b * at_b[k] + c * at_c[k] + d * at_d[k]
 
 
 @inner_kernel
-def _fill_curves(view, half_sine_squared, out):
-    """Interpolate the lobes at the angle whose half has this squared sine, shape (lobe,)."""
-    last = view.curves.shape[0] - 1
-    if half_sine_squared < 0.5:
-        x = math.sqrt(math.sqrt(2.0 * half_sine_squared)) * (0.5 * last)
-    else:
-        x = last - math.sqrt(math.sqrt(2.0 * max(1.0 - half_sine_squared, 0.0))) * (0.5 * last)
-    i = min(int(x), last - 1)
-    u = np.float32(x - i)
-    for q in range(out.size):
-        out[q] = view.curves[i, q] + u * (view.curves[i + 1, q] - view.curves[i, q])
+def _fill_places(view, middle, cosine, out):
+    """Write where in the lobes' curves pixels lie: scattering angles as floating indices."""
+    half = np.float32(0.5 * (view.curves.shape[0] - 1))
+    along_squared = math.sin(0.5 * (middle - view.sun_zenith)) ** 2
+    sines = math.sin(middle) * math.sin(view.sun_zenith)
+    for j in range(out.size):
+        # Squared sines of half the angle from the sun and of half of that from its opposite.
+        near = min(along_squared + 0.5 * sines * (1.0 - cosine[j]), 1.0)
+        far = 1.0 - near
+        x = half * np.sqrt(np.sqrt(np.float32(2.0 * max(min(near, far), 0.0))))
+        out[j] = x if near < far else half + half - x
 
 
 @inner_kernel
-def _add_pixel(latitude, j, weights, share, curves, out):
-    """Add `share` of the radiance at azimuth rows j..j+3 to `out`, shape (3,)."""
-    a, b = np.float32(share * weights[0]), np.float32(share * weights[1])
-    c, d = np.float32(share * weights[2]), np.float32(share * weights[3])
-    lobes = curves.size
-    for k in range(3):
-        total = np.float32(0.0)
-        for q in range(lobes):
-            p = k * lobes + q
-            total += curves[q] * (
-                a * latitude[j, p]
-                + b * latitude[j + 1, p]
-                + c * latitude[j + 2, p]
-                + d * latitude[j + 3, p]
-            )
-        out[k] += total
+def _add_pixels(view, latitude, first, weights, share, place, out):
+    """Add `share` of the radiance of pixels to `out`, shape (pixel, 3).
+
+    A pixel lies among the rows of `latitude` from its own `first` on, by its four `weights`.
+    """
+    last = view.curves.shape[0] - 2
+    scale = np.float32(share)
+    for j in range(out.shape[0]):
+        i = min(int(place[j]), last)
+        low, high, u = view.curves[i], view.curves[i + 1], place[j] - np.float32(i)
+        a, b, c, d = weights[j, 0], weights[j, 1], weights[j, 2], weights[j, 3]
+        at = first[j]
+        at_a, at_b, at_c, at_d = latitude[at], latitude[at + 1], latitude[at + 2], latitude[at + 3]
+        red = green = blue = np.float32(0.0)
+        for q in range(low.size):
+            lobe = low[q] + u * (high[q] - low[q])
+            red += lobe * (a * at_a[0, q] + b * at_b[0, q] + c * at_c[0, q] + d * at_d[0, q])
+            green += lobe * (a * at_a[1, q] + b * at_b[1, q] + c * at_c[1, q] + d * at_d[1, q])
+            blue += lobe * (a * at_a[2, q] + b * at_b[2, q] + c * at_c[2, q] + d * at_d[2, q])
+        out[j, 0] += scale * red
+        out[j, 1] += scale * green
+        out[j, 2] += scale * blue
 
 
 @kernel
@@ -139,12 +142,12 @@ def fill_directions(view, zenith, azimuth, height, first, last, out):
         Receives RGB.
     """
     azimuths, channels = view.table.shape[2], view.table.shape[3]
-    latitude = np.empty((2, azimuths + 2, channels), np.float32)
-    curves = np.empty(view.curves.shape[1], np.float32)
     columns = out.shape[1]
-    angle, cosine = np.empty(columns), np.empty(columns)
-    row, weights = np.empty((2, columns), np.int64), np.empty((2, columns, 4))
-    theta, share, across = np.empty(2), np.zeros(2), np.empty(4)
+    latitude = np.empty((2, azimuths + 2, channels), np.float32)
+    by_lobe = latitude.reshape((2, azimuths + 2, 3, channels // 3))
+    angle, cosine, place = np.empty(columns), np.empty(columns), np.empty(columns, np.float32)
+    row, weights = np.empty((2, columns), np.int64), np.empty((2, columns, 4), np.float32)
+    theta, share, four = np.empty(2), np.zeros(2), np.empty(4)
     shares_zenith, shares_azimuth = zenith.shape[1] == 1, azimuth.shape[0] == 1
     keeps_weights = shares_zenith and shares_azimuth and view.zenith_first == 0.0
     has_weights = np.zeros(2, np.bool_)
@@ -154,35 +157,40 @@ def fill_directions(view, zenith, azimuth, height, first, last, out):
             mirrors = _fill_angles(azimuth[0 if shares_azimuth else i], angle, cosine)
             is_mirrored = shares_zenith and mirrors
         computed = (columns + 1) // 2 if is_mirrored else columns
-        along_squared = sines = 0.0
-        for j in range(computed):
-            if j == 0 or not shares_zenith:
-                middle = zenith[i, 0 if shares_zenith else j]
-                _split_pixel(view, middle, height, theta, share)
-                along_squared = math.sin(0.5 * (middle - view.sun_zenith)) ** 2
-                sines = math.sin(middle) * math.sin(view.sun_zenith)
-                for side in range(2):
-                    if share[side] == 0.0:
-                        continue
-                    end = computed if shares_zenith else j + 1
-                    if not (keeps_weights and has_weights[side]):
-                        has_weights[side] = True
-                        for q in range(j, end):
-                            row[side, q] = _azimuth_weights(
-                                view, theta[side], angle[q], cosine[q], weights[side, q]
-                            )
-                    begin = 0 if shares_zenith else row[side, j]
-                    end = azimuths + 2 if shares_zenith else begin + 4
-                    _fill_latitude(view, side, theta[side], begin, end, across, latitude[side])
-            across_squared = 0.5 * (1.0 - cosine[j])
-            _fill_curves(view, min(along_squared + sines * across_squared, 1.0), curves)
-            pixel = out[i - first, j]
-            for k in range(3):
-                pixel[k] = 0.0
+        span = computed if shares_zenith else 1
+        for begin in range(0, computed, span):
+            middle = zenith[i, 0 if shares_zenith else begin]
+            _split_pixel(view, middle, height, theta, share)
+            for side in range(2):
+                if share[side] == 0.0:
+                    continue
+                if not (keeps_weights and has_weights[side]):
+                    has_weights[side] = True
+                    for j in range(begin, begin + span):
+                        row[side, j] = _azimuth_weights(
+                            view, theta[side], angle[j], cosine[j], four
+                        )
+                        for q in range(4):
+                            weights[side, j, q] = four[q]
+                low = 0 if shares_zenith else row[side, begin]
+                high = azimuths + 2 if shares_zenith else low + 4
+                _fill_latitude(view, side, theta[side], low, high, four, latitude[side])
+            end = begin + span
+            _fill_places(view, middle, cosine[begin:end], place[begin:end])
+            pixels = out[i - first, begin:end]
+            for j in range(span):
+                for k in range(3):
+                    pixels[j, k] = 0.0
             for side in range(2):
                 if share[side] > 0.0:
-                    _add_pixel(
-                        latitude[side], row[side, j], weights[side, j], share[side], curves, pixel
+                    _add_pixels(
+                        view,
+                        by_lobe[side],
+                        row[side, begin:end],
+                        weights[side, begin:end],
+                        share[side],
+                        place[begin:end],
+                        pixels,
                     )
         _mirror(out[i - first], computed)
 

@@ -11,7 +11,7 @@ import numpy as np
 from skybake.errors import InputError
 from skybake.luts.atmosphere import Atmosphere, is_stored, load_atmosphere
 from skybake.luts.ray import RayLight, trace_rays
-from skybake.optics.lobes import Lobes, split_phase
+from skybake.optics.lobes import Lobes, pad_lobes, split_phase
 from skybake.optics.medium import Array, build_medium
 from skybake.optics.phase import eval_phase
 from skybake.optics.spectrum import star_irradiance
@@ -19,9 +19,10 @@ from skybake.preset import Planet, load_preset
 from skybake.sky.view import (
     AZIMUTHS,
     AZIMUTHS_FROM_SPACE,
-    AZIMUTHS_TWILIGHT,
     SkyView,
     horizon_angles,
+    ray_azimuths,
+    resample_azimuths,
     table_directions,
 )
 from skybake.transport.march import march_rays
@@ -32,8 +33,6 @@ WAVELENGTHS = np.linspace(380.0, 720.0, 16)
 
 LOWEST_EYE = 1e-8
 """Altitude of an observer on the ground: ten micrometres, so that a horizon exists. [km]"""
-
-TWILIGHT_ELEVATION = math.radians(2.0)
 
 
 class Sky:
@@ -174,25 +173,28 @@ class Sky:
         zenith_first, zenith_horizon = horizon_angles(
             self.r, self.medium.r_bottom, self.medium.r_top
         )
-        is_day = self.sun_elevation > TWILIGHT_ELEVATION
+        is_inside = zenith_first == 0.0
         sun_zenith = math.pi / 2.0 - self.sun_elevation
-        azimuths = AZIMUTHS if is_day else AZIMUTHS_TWILIGHT
-        if zenith_first > 0.0:
-            azimuths = AZIMUTHS_FROM_SPACE
+        azimuths = AZIMUTHS_FROM_SPACE
+        if is_inside:
+            azimuths = ray_azimuths(self.sun_elevation, zenith_horizon)
         zenith, phi = table_directions(sun_zenith, zenith_first, zenith_horizon, azimuths)
         theta = np.broadcast_to(zenith[:, :, None], phi.shape)
         mu = np.cos(theta)
         nu = mu * math.cos(sun_zenith) + np.sin(theta) * math.sin(sun_zenith) * np.cos(phi)
         light = self._light(mu.ravel(), nu.ravel())
-        lobes = self._lobes
+        lobes = pad_lobes(self._lobes)
         fold = np.einsum("cwq,wk->cwkq", lobes.weights, rgb_weights)
         table = np.tensordot(light.single, fold, axes=2)
         table[:, :, 0] += light.diffuse @ rgb_weights
+        table = table.reshape(*theta.shape, -1)
+        if is_inside:
+            table = resample_azimuths(table, AZIMUTHS)
         return SkyView(
             zenith_first=zenith_first,
             zenith_horizon=zenith_horizon,
             sun_zenith=sun_zenith,
-            table=table.reshape(*theta.shape, -1).astype(np.float32),
+            table=table.astype(np.float32),
             curves=np.ascontiguousarray(lobes.curves.T, dtype=np.float32),
         )
 

@@ -22,9 +22,17 @@ Table = npt.NDArray[np.float32]
 
 LATITUDES = 120
 LATITUDES_FROM_SPACE = 180
-AZIMUTHS = 33
-AZIMUTHS_TWILIGHT = 97
+AZIMUTHS = 97
 AZIMUTHS_FROM_SPACE = 121
+
+RAY_AZIMUTHS = 13
+"""Azimuths of rays where the observer sees no twilight: the diffuse field has orders m up to
+10, and what the sun alone lights is smoother."""
+
+RAY_AZIMUTHS_TWILIGHT = 49
+TWILIGHT_ELEVATION = math.radians(2.0)
+HIGH_DIP = math.radians(4.0)
+"""Dip of the horizon beyond which the planet's shadow shows an edge too sharp for few azimuths."""
 
 DUSK = -0.03
 """Cosine of the sun's zenith angle, where a view from space ends, at which nodes are densest:
@@ -67,6 +75,33 @@ def horizon_angles(r: float, r_bottom: float, r_top: float) -> tuple[float, floa
     """Zenith angles at which the air begins and at which the ground begins. [rad]"""
     first = math.pi - math.asin(r_top / r) if r > r_top else 0.0
     return first, math.pi - math.asin(min(1.0, r_bottom / r))
+
+
+def ray_azimuths(sun_elevation: float, zenith_horizon: float) -> int:
+    """Azimuths of rays, from which `resample_azimuths` makes those of a table inside the air."""
+    dip = zenith_horizon - math.pi / 2.0
+    if sun_elevation > TWILIGHT_ELEVATION + dip:
+        return RAY_AZIMUTHS
+    return RAY_AZIMUTHS_TWILIGHT if dip < HIGH_DIP else AZIMUTHS
+
+
+def resample_azimuths(table: Array, azimuths: int) -> Array:
+    """Evaluate the cosine series through the azimuths of a table at others.
+
+    Parameters
+    ----------
+    table : ndarray of float64, shape (side, latitude, azimuth, channel)
+        At equal distances from 0 to pi.
+    azimuths : int
+        How many to have instead, at equal distances too.
+    """
+    last = table.shape[2] - 1
+    order = np.arange(last + 1)
+    ends_halved = np.where((order == 0) | (order == last), 0.5, 1.0)
+    analysis = 2.0 / last * np.cos(math.pi / last * np.outer(order, order)) * ends_halved
+    synthesis = np.cos(np.outer(np.linspace(0.0, math.pi, azimuths), order)) * ends_halved
+    resampled: Array = synthesis @ analysis @ table
+    return resampled
 
 
 def table_directions(

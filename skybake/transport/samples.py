@@ -26,8 +26,6 @@ class Samples(NamedTuple):
     ----------
     distance, radius : ndarray of float64, shape (sample,)
         Distance from the observer and from the planet's centre. [km]
-    lit : ndarray of bool, shape (sample,)
-        Whether the point is outside the planet's shadow.
     density : ndarray of float64, shape (sample, constituent)
         Relative densities.
     column_to : ndarray of float64, shape (sample, constituent)
@@ -36,8 +34,7 @@ class Samples(NamedTuple):
         Transmittance to the observer times the length that the sample stands
         for; a sum of weight * source is the integral along the ray. [km]
     first, number : ndarray of int64, shape (ray,)
-        First sample of each ray of the batch and how many there are; neighbours may
-        share theirs.
+        First sample of each ray of the batch and how many there are: two for each step.
     length : ndarray of float64, shape (ray,)
         Distance to the end of the ray. [km]
     hits_ground : ndarray of bool, shape (ray,)
@@ -50,7 +47,6 @@ class Samples(NamedTuple):
 
     distance: Array
     radius: Array
-    lit: npt.NDArray[np.bool_]
     density: Array
     column_to: Array
     weight: Array
@@ -68,7 +64,6 @@ def allocate_samples(medium: Medium) -> Samples:
     return Samples(
         distance=np.empty(BATCH_SAMPLES),
         radius=np.empty(BATCH_SAMPLES),
-        lit=np.empty(BATCH_SAMPLES, np.bool_),
         density=np.empty((BATCH_SAMPLES, constituents)),
         column_to=np.empty((BATCH_SAMPLES, constituents)),
         weight=np.empty((BATCH_SAMPLES, wavelengths)),

@@ -12,7 +12,6 @@ from skybake.transport.geometry import (
     distance_to_entry,
     distance_to_exit,
     radius_at,
-    shadow_interval,
     squared_closest_approach,
 )
 from skybake.transport.kernel import inner_kernel, kernel
@@ -56,10 +55,8 @@ def trace(medium, shells, max_arc, rays, begin, end, samples):
         Altitudes at which steps end, ascending from the ground to the top. [km]
     max_arc : float
         Largest angle, seen from the planet's centre, that a step may cover. [rad]
-    rays : ndarray of float64, shape (ray, 4)
-        Start of each ray, inside the air or outside [km], cosines of its zenith
-        angle and of the sun's there, and of the angle between ray and sun. Those of
-        the sun only decide where the planet's shadow lies.
+    rays : ndarray of float64, shape (ray, 2)
+        Start of each ray, inside the air or outside [km], and cosine of its zenith angle.
     begin, end : int
         Rays to be traced.
     samples : Samples
@@ -72,57 +69,28 @@ def trace(medium, shells, max_arc, rays, begin, end, samples):
 
     Notes
     -----
-    Steps end at shells, at the point closest to the planet, at the edges of the
-    planet's shadow, after `max_arc` and after one optical depth.
-    Each has two Gauss-Legendre points, so that smooth integrands are integrated
-    to fourth order and neither kinks of the profile nor the shadow's edge falls
-    inside a step.
+    Steps end at shells, at the point closest to the planet, after `max_arc` and after
+    one optical depth. Each has two Gauss-Legendre points, so that smooth integrands are
+    integrated to fourth order and no kink of the profile falls inside a step.
     """
     capacity = samples.distance.size
     used = np.int64(0)
-    is_shared = False
     i = begin
     while i < end and i - begin < samples.first.size and used + MAX_SAMPLES <= capacity:
-        r, mu, mu_s, nu = rays[i, 0], rays[i, 1], rays[i, 2], rays[i, 3]
-        t_first, t_last, hits_ground = ray_limits(medium, r, mu)
-        dark_first, dark_last = shadow_interval(r, mu, mu_s, nu, medium.r_bottom, t_first, t_last)
-        is_lit = dark_first > t_last
-        ray = i - begin
-        is_same = is_shared and is_lit and rays[i - 1, 0] == r and rays[i - 1, 1] == mu
-        samples.length[ray] = t_last
-        samples.hits_ground[ray] = hits_ground
-        if is_same:
-            samples.first[ray] = samples.first[ray - 1]
-            samples.number[ray] = samples.number[ray - 1]
-            for k in range(samples.transmittance.shape[1]):
-                samples.transmittance[ray, k] = samples.transmittance[ray - 1, k]
-        else:
-            samples.first[ray] = used
-            used = _trace_ray(
-                medium,
-                shells,
-                max_arc,
-                r,
-                mu,
-                t_first,
-                t_last,
-                dark_first,
-                dark_last,
-                used,
-                ray,
-                samples,
-            )
-            samples.number[ray] = used - samples.first[ray]
-        is_shared = is_lit
+        first = used
+        used = _trace_ray(medium, shells, max_arc, rays[i], first, i - begin, samples)
+        samples.first[i - begin] = first
+        samples.number[i - begin] = used - first
         i += 1
     return i
 
 
 @inner_kernel
-def _trace_ray(
-    medium, shells, max_arc, r, mu, t, t_last, dark_first, dark_last, first, ray, samples
-):
+def _trace_ray(medium, shells, max_arc, start, first, ray, samples):
     """Append the samples of one ray from `first` on; returns the next free one."""
+    r, mu = start[0], start[1]
+    t, t_last, samples.hits_ground[ray] = ray_limits(medium, r, mu)
+    samples.length[ray] = t_last
     transmittance, column = samples.transmittance[ray], samples.column[ray]
     for k in range(transmittance.size):
         transmittance[k] = 1.0
@@ -140,14 +108,9 @@ def _trace_ray(
         )
         # Rounding can put a shell that the ray has just crossed behind it.
         t_next = min(max(t_shell, t), t + arc, t_last)
-        if t < dark_first:
-            t_next = min(t_next, dark_first)
-        elif t < dark_last:
-            t_next = min(t_next, dark_last)
         if n + 2 < first + MAX_SAMPLES // 2:
             t_next = _limit_depth(medium, r, mu, t, t_next, transmittance, samples.density[n])
-        lit = t_next <= dark_first or t >= dark_last
-        brightest = _add_step(medium, r, mu, t, t_next - t, lit, n, samples, transmittance, column)
+        brightest = _add_step(medium, r, mu, t, t_next - t, n, samples, transmittance, column)
         n += 2
         if t_next >= t_shell:
             layer = next_layer
@@ -207,7 +170,7 @@ def _limit_depth(medium, r, mu, t, t_next, transmittance, scratch):
 
 
 @inner_kernel
-def _add_step(medium, r, mu, t, step, lit, n, samples, transmittance, column):
+def _add_step(medium, r, mu, t, step, n, samples, transmittance, column):
     """Append the two points of a step and return the largest transmittance behind it."""
     constituents, wavelengths = medium.extinction.shape
     for i in range(2):
@@ -215,7 +178,6 @@ def _add_step(medium, r, mu, t, step, lit, n, samples, transmittance, column):
         radius = radius_at(r, mu, distance)
         samples.distance[n + i] = distance
         samples.radius[n + i] = radius
-        samples.lit[n + i] = lit
         h = radius - medium.r_bottom
         fill_density(medium.density, medium.r_bottom, medium.r_top, h, samples.density[n + i])
     for k in range(wavelengths):

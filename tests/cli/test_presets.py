@@ -246,11 +246,7 @@ def test_a_picture_in_a_missing_folder_is_one_line_and_no_file(tmp_path):
 
 def kernels():
     cache = Path(os.environ["SKYBAKE_CACHE_DIR"])
-    return {
-        path: path.stat().st_mtime_ns
-        for path in cache.rglob("*")
-        if path.suffix in (".nbi", ".nbc")
-    }
+    return {path: path.stat().st_mtime_ns for path in cache.rglob("*.kernel")}
 
 
 def test_changing_the_air_compiles_no_kernel(tmp_path):

@@ -81,7 +81,7 @@ def test_harmonics_are_those_of_scipy(mu):
     fill_harmonics(harmonics, mu, out)
     expected = [
         (-1) ** m * math.sqrt(2.0 if m else 1.0) * sph_harm_y(degree, m, math.acos(mu), 0.0).real
-        for m in range(order + 1)
-        for degree in range(m, order + 1)
+        for degree in range(order + 1)
+        for m in range(degree + 1)
     ]
     np.testing.assert_allclose(out, expected, atol=1e-12)

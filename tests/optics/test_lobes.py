@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from skybake.optics.lobes import TOLERANCE, split_phase
-from skybake.optics.medium import build_medium
+from skybake.optics.lobes import TOLERANCE, pad_lobes, split_phase
+from skybake.optics.medium import LANES, build_medium
 from skybake.optics.phase import scattering_angles
 from skybake.preset import load_preset
 from skybake.sky.sky import WAVELENGTHS
@@ -37,3 +37,13 @@ def test_isotropic_scattering_needs_no_lobe_of_its_own():
     assert lobes.curves.shape[0] <= 2
     restored = np.einsum("cwq,qa->caw", lobes.weights, lobes.curves)
     np.testing.assert_allclose(restored, isotropic, rtol=2e-3)
+
+
+def test_lobes_that_fill_up_a_vector_change_nothing():
+    phase = phase_of("mars")
+    lobes = split_phase(phase, [[0], [1]])
+    padded = pad_lobes(lobes)
+    assert len(padded.curves) % LANES == padded.weights.shape[2] % LANES == 0
+    np.testing.assert_allclose(
+        padded.weights @ padded.curves, lobes.weights @ lobes.curves, rtol=1e-13
+    )

@@ -9,7 +9,7 @@ import pytest
 from skybake.baking.scene import Scene
 from skybake.baking.settings import MapSettings
 from skybake.preset import load_preset
-from skybake.sky.view import horizon_angles
+from skybake.sky.view import AZIMUTHS, horizon_angles
 from tests.skies import view_cosines
 
 ELEVATIONS = (
@@ -77,6 +77,20 @@ def test_table_is_within_half_a_percent_of_rays(preset, elevation, altitude):
     error = table / rays - 1.0
     assert np.abs(error).max() < (0.005 if elevation > -6.0 else 0.01)
     assert math.sqrt(np.mean(error**2)) < 0.001
+
+
+@pytest.mark.parametrize(
+    ("elevation", "altitude", "tolerance"),
+    [(60.0, 0.0, 1e-4), (2.1, 0.0, 1e-4), (6.5, 10.0, 1e-4), (-4.0, 0.0, 1e-3), (-4.0, 10.0, 1e-3)],
+)
+@pytest.mark.parametrize("preset", ["earth", "mars"])
+def test_rays_at_few_azimuths_tell_all_others(monkeypatch, preset, elevation, altitude, tolerance):
+    made = scene(preset, elevation, altitude)
+    zenith, azimuth, _ = views(made)
+    few = by_table(made, zenith, azimuth)
+    monkeypatch.setattr("skybake.sky.sky.ray_azimuths", lambda *_: AZIMUTHS)
+    monkeypatch.setitem(made.__dict__, "view", made.sky.view(made.rgb_weights))
+    np.testing.assert_allclose(few, by_table(made, zenith, azimuth), rtol=tolerance)
 
 
 @pytest.mark.parametrize(
