@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from skybake.sequence.frames import FramePattern
     from skybake.sequence.plan import Plan
 
-_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_NUMBER = r"[+-]?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?"
 _RANGE = re.compile(rf"({_NUMBER})\.\.({_NUMBER})", re.ASCII)
 
 
