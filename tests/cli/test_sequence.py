@@ -689,3 +689,15 @@ def test_emitted_commands_of_a_part_are_of_that_part():
 def test_help_names_what_patterns_mean():
     text = " ".join(invoke("sequence", "--help").stdout.split())
     assert "#### is the frame number in four digits, as is a single #" in text
+
+
+def test_the_default_name_tells_what_was_set_of_the_world(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for changes, name in (
+        ((), "mars"),
+        (("--set", "dust.optical_depth=2"), "mars_dust.optical_depth=2"),
+        (("--set", "dust.optical_depth=0.3..2"), "mars"),
+    ):
+        result = invoke("sequence", "--preset", "mars", "--frames", "1-2", *changes, "--dry-run")
+        assert result.exit_code == 0
+        assert result.stdout.splitlines()[1].endswith(f"  {name}.0002.exr")
