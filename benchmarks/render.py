@@ -1,25 +1,25 @@
-"""Times whole processes of ``skybake render`` beside the floor of their imports and file write.
+"""Times whole processes of skybake beside the floor and beside its peers.
 
-Usage: ``python benchmarks/render.py [--runs 7] [--json FILE] [--large]``. Runs are
-interleaved and the median is taken, so that a machine's moods fall on all alike.
-The floor is a process that imports numpy, numba and OpenImageIO and writes the
-same pixels as skybake has baked.
+Usage: ``python -m benchmarks.render [--runs 7] [--json FILE] [--mitsuba PYTHON]
+[--blender PYTHON] [--large] [--cold]``. Runs are interleaved and the median is taken, so that a
+machine's moods fall on all alike. The floor is a process that imports numpy, numba and
+OpenImageIO and writes the same pixels as skybake has baked. Mitsuba (``pip install mitsuba``) and
+Blender (``pip install bpy``) want other versions of numpy, so each is named by the interpreter that
+has it.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-import os
-import platform
-import resource
-import statistics
-import subprocess
 import sys
 import tempfile
-import time
-from datetime import UTC, datetime
 from pathlib import Path
+
+from benchmarks.processes import machine, medians, usage
+
+PEERS = Path(__file__).parent / "peers"
+FRAMES = 96
 
 FLOOR = """
 import sys
@@ -40,60 +40,85 @@ print(wall, resource.getrusage(resource.RUSAGE_SELF).ru_utime - used)
 IMPORTS = "import numpy, numba, OpenImageIO"
 
 
-def measure(command: list[str], environment: dict[str, str]) -> dict[str, float]:
-    """Wall seconds, CPU seconds and peak resident memory of one process."""
-    begin = time.perf_counter()
-    process = subprocess.Popen(
-        command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-    output, errors = process.communicate()
-    wall = time.perf_counter() - begin
-    if process.returncode:
-        raise SystemExit(f"{' '.join(command)}: must succeed, got {errors.strip()}")
-    return {"wall": wall, "output": output}
-
-
-def usage(command: list[str], environment: dict[str, str]) -> dict[str, float]:
-    """Run a command in a child of its own, so that its CPU time and memory are its alone."""
-    reader, writer = os.pipe()
-    child = os.fork()
-    if child == 0:
-        os.close(reader)
-        result = measure(command, environment)
-        used = resource.getrusage(resource.RUSAGE_CHILDREN)
-        result |= {"cpu": used.ru_utime + used.ru_stime, "rss": used.ru_maxrss / 1024}
-        os.write(writer, json.dumps(result).encode())
-        os._exit(0)
-    os.close(writer)
-    with os.fdopen(reader) as pipe:
-        text = pipe.read()
-    os.waitpid(child, 0)
-    if not text:
-        raise SystemExit(f"{' '.join(command)}: must succeed")
-    return json.loads(text)
-
-
-def cases(folder: Path, *, large: bool) -> dict[str, list[str]]:
+def cases(folder: Path, options: argparse.Namespace) -> dict[str, list[str]]:
     """Commands by name."""
-    render = [sys.executable, "-m", "skybake", "render", "--sun", "5deg", "--quiet"]
+    skybake = [sys.executable, "-m", "skybake"]
 
-    def map_of(size: str, *options: str) -> list[str]:
-        return [*render, "--size", size, "-o", str(folder / f"{size}.exr"), *options]
+    def map_of(size: str, *more: str, name: str = "a.exr") -> list[str]:
+        output = str(folder / name)
+        return [*skybake, "render", "--sun", "5deg", "-q", "--size", size, "-o", output, *more]
 
     named = {
         "imports": [sys.executable, "-c", IMPORTS],
-        "help": [sys.executable, "-m", "skybake", "--help"],
+        "help": [*skybake, "--help"],
         "2048x1024": map_of("2048x1024"),
-        "4096x2048": map_of("4096x2048"),
+        "4096x2048": map_of("4096x2048", name="large.exr"),
         "4096x2048 mars": map_of("4096x2048", "--preset", "mars"),
-        "cubemap 1024": [
-            *(*render, "--projection", "cubemap", "--size", "1024"),
-            *("-o", str(folder / "cube.exr")),
-        ],
+        "4096x2048 at 400 km": map_of("4096x2048", "--altitude", "400km"),
+        "cubemap 1024": map_of("1024", "--projection", "cubemap"),
     }
-    if large:
+    if options.mitsuba:
+        named["Mitsuba 4096x2048"] = [
+            *(options.mitsuba, str(PEERS / "mitsuba_sky.py")),
+            *("4096", "5", str(folder / "mitsuba.exr")),
+        ]
+    if options.blender:
+        named["Blender 4096x2048"] = [
+            *(options.blender, str(PEERS / "blender_sky.py")),
+            *("4096", "5", str(folder / "blender.exr")),
+        ]
+    if options.large:
         named["16384x8192"] = map_of("16384x8192")
     return named
+
+
+def sequence(folder: Path) -> list[str]:
+    """Command of a sequence."""
+    return [
+        *(sys.executable, "-m", "skybake", "sequence", "--sun", "-6deg..90deg", "-q"),
+        *("--frames", f"1-{FRAMES}", "--size", "2048x1024", "-o", str(folder / "sky.####.exr")),
+    ]
+
+
+def floor(folder: Path, imports: dict[str, float]) -> dict[str, float]:
+    """Cost of the imports and of writing what skybake has baked."""
+    files = [str(folder / "large.exr"), str(folder / "floor.exr")]
+    written = usage([sys.executable, "-c", FLOOR, *files])
+    wall, cpu = (float(part) for part in written["output"].split())
+    return {"wall": imports["wall"] + wall, "cpu": imports["cpu"] + cpu, "rss": written["rss"]}
+
+
+def peer_versions(options: argparse.Namespace) -> dict[str, str]:
+    """Versions of the peers, as they say themselves."""
+    asked = {
+        "Mitsuba": (options.mitsuba, "import mitsuba; print(mitsuba.__version__)"),
+        "Blender": (options.blender, "import bpy; print(bpy.app.version_string)"),
+    }
+    return {
+        name: str(usage([python, "-c", code])["output"]).split()[-1]
+        for name, (python, code) in asked.items()
+        if python
+    }
+
+
+def measure(options: argparse.Namespace, folder: Path) -> dict[str, list[dict[str, float]]]:
+    """Run everything, interleaved."""
+    results: dict[str, list[dict[str, float]]] = {}
+    named = cases(folder, options)
+    for command in named.values():
+        usage(command)
+    for _ in range(options.runs):
+        for case, command in named.items():
+            results.setdefault(case, []).append(usage(command))
+        results.setdefault("floor 4096x2048", []).append(floor(folder, results["imports"][-1]))
+    frames = f"{FRAMES} frames 2048x1024"
+    results[frames] = [usage(sequence(folder)) for _ in range(min(options.runs, 3))]
+    if options.cold:
+        for run in range(min(options.runs, 3)):
+            cold = {"SKYBAKE_CACHE_DIR": str(folder / f"cold{run}")}
+            command = ["env", *(f"{key}={value}" for key, value in cold.items())]
+            results.setdefault("2048x1024 cold", []).append(usage([*command, *named["2048x1024"]]))
+    return results
 
 
 def main() -> None:
@@ -101,51 +126,19 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--runs", type=int, default=7)
     parser.add_argument("--json", type=Path)
+    parser.add_argument("--mitsuba", metavar="PYTHON", help="interpreter that has mitsuba")
+    parser.add_argument("--blender", metavar="PYTHON", help="interpreter that has bpy")
     parser.add_argument("--large", action="store_true", help="also 16384x8192")
     parser.add_argument("--cold", action="store_true", help="also without compiled kernels")
     options = parser.parse_args()
-    results: dict[str, list[dict[str, float]]] = {}
     with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        environment = dict(os.environ)
-        named = cases(folder, large=options.large)
-        for command in named.values():
-            usage(command, environment)
-        floor = [sys.executable, "-c", FLOOR]
-        floor += [str(folder / "4096x2048.exr"), str(folder / "floor.exr")]
-        for _ in range(options.runs):
-            for case, command in named.items():
-                results.setdefault(case, []).append(usage(command, environment))
-            written = usage(floor, environment)
-            wall, cpu = (float(part) for part in written["output"].split())
-            imports = results["imports"][-1]
-            results.setdefault("floor 4096x2048", []).append(
-                {
-                    "wall": imports["wall"] + wall,
-                    "cpu": imports["cpu"] + cpu,
-                    "rss": written["rss"],
-                }
-            )
-        if options.cold:
-            for run in range(min(options.runs, 3)):
-                cold = environment | {"SKYBAKE_CACHE_DIR": str(folder / f"cold{run}")}
-                results.setdefault("2048x1024 cold", []).append(usage(named["2048x1024"], cold))
-    medians = {
-        case: {key: statistics.median(run[key] for run in runs) for key in ("wall", "cpu", "rss")}
-        for case, runs in results.items()
-    }
-    print(f"{'case':<18} {'wall s':>8} {'CPU s':>8} {'peak MB':>8}")
-    for case, row in medians.items():
-        print(f"{case:<18} {row['wall']:8.2f} {row['cpu']:8.2f} {row['rss']:8.0f}")
+        results = {case: medians(runs) for case, runs in measure(options, Path(name)).items()}
+    print(f"{'case':<22} {'wall s':>8} {'CPU s':>8} {'peak MB':>8}")
+    for case, row in results.items():
+        print(f"{case:<22} {row['wall']:8.2f} {row['cpu']:8.2f} {row['rss']:8.0f}")
     if options.json:
-        about = {
-            "date": datetime.now(UTC).date().isoformat(),
-            "machine": platform.processor() or platform.machine(),
-            "cpus": len(os.sched_getaffinity(0)),
-            "python": platform.python_version(),
-            "runs": options.runs,
-        }
-        options.json.write_text(json.dumps({"about": about, "medians": medians}, indent=1) + "\n")
+        about = machine() | {"runs": options.runs, "peers": peer_versions(options)}
+        options.json.write_text(json.dumps({"about": about, "medians": results}, indent=1) + "\n")
 
 
 if __name__ == "__main__":

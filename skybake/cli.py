@@ -15,10 +15,13 @@ from typing import Any, NoReturn
 import click
 
 import skybake
+from skybake.commands.cache import cache
+from skybake.commands.memory import memory_limit
 from skybake.commands.presets import presets
 from skybake.commands.preview import preview
 from skybake.commands.probe import probe
 from skybake.commands.render import render
+from skybake.commands.sequence import sequence
 from skybake.errors import SkybakeError
 
 FAILED = 1
@@ -26,6 +29,11 @@ INTERRUPTED = 130
 ENDED_BY_SIGNAL = 128
 
 _ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
+
+
+# What is raised where memory ends: by Python, by libraries that cannot be loaded or that
+# hand on no reason, and by threads that cannot start.
+_OUT_OF_MEMORY = (MemoryError, ImportError, SystemError, RuntimeError)
 
 
 class _EndedError(BaseException):
@@ -61,6 +69,10 @@ class _CommandLine(click.Group):
                 status, told_to_end = _fail("interrupted", INTERRUPTED), True
             except _EndedError as error:
                 status, told_to_end = _fail("terminated", ENDED_BY_SIGNAL + error.args[0]), True
+            except _OUT_OF_MEMORY as error:
+                if not _is_short_of_memory(error):
+                    raise
+                status = _fail(f"must have more memory, got {_memory_text()}", FAILED)
             except OSError as error:
                 # What knows a file names it; this is a full disk below standard output.
                 status = _fail(f"must be able to write, got {error.strerror or error}", FAILED)
@@ -68,6 +80,16 @@ class _CommandLine(click.Group):
             # Only now is the exception gone, and with it what it kept from its clean-up.
             _exit_now(status)
         sys.exit(status or 0)
+
+
+def _is_short_of_memory(error: Exception) -> bool:
+    """Whether memory is what was missing; under a limit libraries fail in many ways."""
+    return isinstance(error, MemoryError) or memory_limit() is not None
+
+
+def _memory_text() -> str:
+    limit = memory_limit()
+    return "too little" if limit is None else f"a limit of {limit / 1e6:.0f} MB"
 
 
 @contextmanager
@@ -138,14 +160,17 @@ def main() -> None:
       skybake presets list
       skybake preview earth_sun+30.00deg_equirect.exr -o earth.png
 
-    Exit status: 0 done, 1 failed, 2 wrong usage, 130 interrupted, 143 terminated.
+    Exit status: 0 done, 1 failed, 2 wrong usage, 3 some frames failed, 130 interrupted,
+    143 terminated.
     """
 
 
 main.add_command(render)
+main.add_command(sequence)
 main.add_command(presets)
 main.add_command(preview)
 main.add_command(probe)
+main.add_command(cache)
 
 
 def run() -> NoReturn:

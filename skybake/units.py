@@ -1,4 +1,4 @@
-"""Quantities as people type them, with or without a unit: "5deg", "2km", "30000ft"."""
+"""Quantities as people type them, with or without a unit: "5deg", "2km", "30000ft", "1h30min"."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ _RADIANS = {
 }
 _KILOMETRES = {"m": 1e-3, "km": 1.0, "ft": 0.3048e-3, "mi": 1.609344}
 
+_SECONDS = {"s": 1.0, "min": 60.0, "h": 3600.0, "d": 86_400.0}
+
 _QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-zA-Z]*)", re.ASCII)
+_DURATION_PART = r"([0-9]+\.?[0-9]*|\.[0-9]+)(s|min|h|d)"
 
 
 def parse_angle(text: str) -> float:
@@ -79,6 +82,34 @@ def parse_column(text: str) -> float:
         If the text is no finite number with this unit.
     """
     return _parse(text, {"DU": 1.0}, bare="DU", quantity="a column of gas", example="320DU")
+
+
+def parse_duration(text: str) -> float:
+    """Read a duration such as ``10min``, ``30s`` or ``1h30min``.
+
+    Parameters
+    ----------
+    text : str
+        Numbers, each with a unit: s, min, h or d.
+
+    Returns
+    -------
+    float
+        The duration, at least 0. [s]
+
+    Raises
+    ------
+    InputError
+        If the text is no finite duration with these units.
+    """
+    parts = re.findall(_DURATION_PART, text.strip())
+    value = sum(float(number) * _SECONDS[unit] for number, unit in parts)
+    if not re.fullmatch(f"({_DURATION_PART})+", text.strip()) or not math.isfinite(value):
+        raise InputError(
+            f"must be a duration such as 10min or 1h30min (units: {', '.join(_SECONDS)}), "
+            f"got {text!r}"
+        )
+    return value
 
 
 def _parse(text: str, units: dict[str, float], *, bare: str, quantity: str, example: str) -> float:

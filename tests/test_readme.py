@@ -1,6 +1,5 @@
 """What the README says is so."""
 
-import os
 import re
 import subprocess
 import sys
@@ -10,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from skybake.preset import preset_names, preset_text
-from tests.cli.runs import PACKAGES
+from tests.cli.runs import installed
 
 REPOSITORY = Path(__file__).parents[1]
 README = (REPOSITORY / "README.md").read_text("utf-8")
@@ -22,11 +21,7 @@ RENDER, TEST = SHELL[:2]
 @pytest.fixture
 def shell(tmp_path):
     """Run a script in an empty folder, with skybake on the path as an installation puts it."""
-    programs = tmp_path / "bin"
-    programs.mkdir()
-    program = programs / "skybake"
-    program.write_text(f'#!/bin/sh\nexec {sys.executable} -m skybake "$@"\n')
-    program.chmod(0o755)
+    environment = installed(tmp_path / "bin")
     folder = tmp_path / "empty"
     folder.mkdir()
 
@@ -34,7 +29,7 @@ def shell(tmp_path):
         return subprocess.run(
             script if isinstance(script, list) else ["/bin/sh", "-ec", script],
             cwd=folder,
-            env=os.environ | {"PATH": f"{programs}:{os.environ['PATH']}", "PYTHONPATH": PACKAGES},
+            env=environment,
             capture_output=True,
             text=True,
             check=True,

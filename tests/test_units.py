@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from skybake.errors import InputError
-from skybake.units import parse_angle, parse_length
+from skybake.units import parse_angle, parse_duration, parse_length
 
 
 @pytest.mark.parametrize(
@@ -63,6 +63,38 @@ def test_what_is_no_finite_length_is_refused_with_the_known_units(text):
     assert str(caught.value) == (
         f"must be a length such as 2km (units: m, km, ft, mi; a bare number is in m), got {text!r}"
     )
+
+
+@pytest.mark.parametrize(
+    ("text", "seconds"),
+    [
+        ("10min", 600.0),
+        ("1h", 3600.0),
+        ("30s", 30.0),
+        ("1h30min", 5400.0),
+        ("1d2h3min4.5s", 93784.5),
+        (" .5h ", 1800.0),
+        ("0s", 0.0),
+    ],
+)
+def test_a_duration_is_the_sum_of_its_parts(text, seconds):
+    assert parse_duration(text) == seconds
+
+
+@pytest.mark.parametrize(
+    "text", ["", "10", "min", "1h30", "-1h", "1 h", "1m", "1e3s", "nan", "infs", "1h+5s", "\u0665s"]
+)
+def test_what_is_no_duration_is_refused_with_the_known_units(text):
+    with pytest.raises(InputError) as caught:
+        parse_duration(text)
+    assert str(caught.value) == (
+        "must be a duration such as 10min or 1h30min (units: s, min, h, d), got " + repr(text)
+    )
+
+
+def test_a_duration_beyond_all_numbers_is_refused():
+    with pytest.raises(InputError, match="must be a duration"):
+        parse_duration("9" * 400 + "h")
 
 
 @given(

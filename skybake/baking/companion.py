@@ -21,7 +21,8 @@ from skybake.sky.pixels import fill_directions
 from skybake.sky.sky import WAVELENGTHS
 from skybake.sky.sun import fill_sight_columns
 from skybake.sky.view import SkyView
-from skybake.transport.kernel import compile_beside, is_warm
+from skybake.transport.cache import is_warm
+from skybake.transport.kernel import compile_beside
 from skybake.transport.samples import allocate_samples
 
 KERNELS = (fill_harmonics, add_diffuse, fill_sight_columns, fill_directions)

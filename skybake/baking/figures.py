@@ -9,9 +9,18 @@ import numpy as np
 
 from skybake.colour.observer import xyz_weights
 from skybake.constants import BOLTZMANN, DOBSON_UNIT
-from skybake.errors import PresetError
+from skybake.errors import InputError, PresetError
+from skybake.luts.grid import ORDER
+from skybake.luts.solver import MAX_DEPTH, check_depth
 from skybake.optics.haze import HAZE_WAVELENGTH, turbidity, visibility
-from skybake.optics.medium import Array, altitude_nodes, build_medium, vertical_optical_depth
+from skybake.optics.legendre import truncate_peaks
+from skybake.optics.medium import (
+    Array,
+    Medium,
+    altitude_nodes,
+    build_medium,
+    vertical_optical_depth,
+)
 from skybake.optics.spectrum import limb_darkening, star_irradiance, star_spectrum
 from skybake.preset import Absorber, Gas, Planet
 from skybake.sky.sky import WAVELENGTHS
@@ -58,6 +67,8 @@ class Figures:
         Above the atmosphere, facing the star. [lx]
     sun_angular_diameter : float
         Of its disc. [rad]
+    refusal : str or None
+        Why the method `full` does not render it, if so.
     """
 
     wavelengths: Array
@@ -67,6 +78,7 @@ class Figures:
     turbidity: float | None
     sun_illuminance: float
     sun_angular_diameter: float
+    refusal: str | None
 
 
 def derive_figures(planet: Planet) -> Figures:
@@ -77,7 +89,7 @@ def derive_figures(planet: Planet) -> Figures:
     PresetError
         If it cannot be rendered.
     """
-    _try_all(planet)
+    whole = _try_all(planet)
     own = planet.wavelengths or tuple(WAVELENGTHS)
     wavelengths = np.unique(np.clip(FIGURE_WAVELENGTHS, min(own), max(own)))
     medium = build_medium(planet, wavelengths)
@@ -101,19 +113,33 @@ def derive_figures(planet: Planet) -> Figures:
         turbidity=turbidity(planet) if sees_haze else None,
         sun_illuminance=float(xyz_weights(WAVELENGTHS, *star_spectrum(planet.star))[:, 1].sum()),
         sun_angular_diameter=2.0 * planet.star.angular_radius,
+        refusal=_refusal(whole),
     )
 
 
-def _try_all(planet: Planet) -> None:
-    """Sample everything as a rendering does."""
+def _try_all(planet: Planet) -> Medium:
+    """Sample everything as a rendering does, and return the medium that it would have."""
     wavelengths = np.array(planet.wavelengths or WAVELENGTHS, dtype=float)
+    medium = build_medium(planet, wavelengths)
     arrays = [
-        *build_medium(planet, wavelengths)[2:],
+        *medium[2:],
         star_irradiance(planet.star, wavelengths),
         limb_darkening(planet.star, wavelengths),
     ]
     if not all(np.isfinite(array).all() for array in arrays):
         raise PresetError(f"{planet.name}: optics must be finite numbers")
+    return medium
+
+
+def _refusal(medium: Medium) -> str | None:
+    # Truncation only takes away from the depth, and most air needs none to be thin enough.
+    if vertical_optical_depth(medium).sum(axis=0).max() <= MAX_DEPTH:
+        return None
+    try:
+        check_depth(truncate_peaks(medium, ORDER))
+    except InputError as error:
+        return str(error)
+    return None
 
 
 def _column(constituent: object, length: float) -> float | None:
@@ -160,6 +186,8 @@ def figures_text(planet: Planet, figures: Figures) -> str:
         f"sun above the atmosphere: {figures.sun_illuminance:.4g} lx",
         f"sun's disc: {math.degrees(figures.sun_angular_diameter):.4g}deg across",
     ]
+    if figures.refusal is not None:
+        lines.append(f"will not render: {figures.refusal}")
     if planet.data_quality:
         lines.append(f"data quality: {' '.join(planet.data_quality.split())}")
     return "\n".join(lines)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from skybake import reference
+from skybake.baking.light import light_of_scene
 from skybake.baking.scene import Scene, luminous_weights
 from skybake.baking.settings import MapSettings
 from skybake.errors import InputError
@@ -187,12 +188,11 @@ def _illuminance(planet: Planet, sky: Sky, directions: Directions) -> dict[str, 
     settings = MapSettings(
         sun_elevation=sky.sun_elevation, altitude=sky.altitude, method=sky.method
     )
-    scene = Scene(planet, settings)
-    normal, horizontal = scene.sun_illuminance()
+    light = light_of_scene(Scene(planet, settings))
     figures = {
-        "direct_normal_illuminance_lux": normal,
-        "direct_illuminance_lux": horizontal,
-        "sky_illuminance_lux": scene.sky_illuminance(),
+        "direct_normal_illuminance_lux": light.direct_normal_illuminance,
+        "direct_illuminance_lux": light.direct_illuminance,
+        "sky_illuminance_lux": light.sky_illuminance,
     }
     return {name: np.full(directions.zenith.size, value) for name, value in figures.items()}
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 
@@ -35,6 +35,13 @@ def luminous_weights(sky: Sky) -> Array:
     xyz_from_rgb = np.linalg.inv(rgb_from_xyz(find_colour_space("lin_rec709")))
     weights: Array = illuminance * xyz_from_rgb.T
     return weights
+
+
+@cache
+def _probe_zeniths() -> tuple[Array, Array]:
+    """Zenith angles of the upper hemisphere and their weights, which take longer than a frame."""
+    node, weight = np.polynomial.legendre.leggauss(PROBE_ZENITHS)
+    return math.pi / 4.0 * (node + 1.0), math.pi / 4.0 * weight
 
 
 class Scene:
@@ -93,20 +100,23 @@ class Scene:
             flux[part] = (light @ self.rgb_weights) * cells.solid_angle[part, None]
         return flux
 
+    def sun_xyz(self) -> tuple[Array, Array]:
+        """XYZ by the sun's disc, on a plane that faces it and on the horizontal. [lx]"""
+        normal, horizontal = self.sun.irradiance_per_irradiance()
+        return normal @ self.xyz_weights, horizontal @ self.xyz_weights
+
     def sun_illuminance(self) -> tuple[float, float]:
         """Illuminance by the sun's disc, facing it and on the horizontal. [lx]"""
-        normal, horizontal = self.sun.irradiance_per_irradiance()
-        luminous = self.xyz_weights[:, 1]
-        return float(normal @ luminous), float(horizontal @ luminous)
+        normal, horizontal = self.sun_xyz()
+        return float(normal[1]), float(horizontal[1])
 
     def sky_illuminance(self) -> float:
         """Illuminance of a horizontal plane by the sky without the sun's disc. [lx]"""
-        node, weight = np.polynomial.legendre.leggauss(PROBE_ZENITHS)
-        zenith = math.pi / 4.0 * (node + 1.0)
+        zenith, weight = _probe_zeniths()
         azimuth = math.pi * (np.arange(PROBE_AZIMUTHS) + 0.5) / PROBE_AZIMUTHS
         pixels = self.evaluate(zenith[:, None], azimuth[None], 1e-9)
         luminance = pixels.astype(float).mean(axis=1) @ self.luminance
-        flux = math.pi / 4.0 * weight * np.sin(zenith) * np.cos(zenith)
+        flux = weight * np.sin(zenith) * np.cos(zenith)
         return float(2.0 * math.pi * (flux * luminance).sum())
 
     def evaluate(self, zenith: Array, azimuth: Array, height: float) -> np.ndarray:

@@ -2,52 +2,47 @@
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
-from skybake.baking.panel import ColumnPanel, CrossPanel, EquirectPanel, FacePanel, Panel
+from skybake.baking.light import Light, attributes_from_light, light_of_scene
+from skybake.baking.panel import ColumnPanel, CrossPanel, EquirectPanel, FacePanel, Panel, Pixels
 from skybake.baking.paths import default_path, map_paths
-from skybake.baking.preview import SURVEY_ROWS, legible_ev
+from skybake.baking.preview import SURVEY_ROWS
+from skybake.baking.recipe import recipe_attributes
 from skybake.baking.scene import Scene
 from skybake.baking.settings import MapSettings
-from skybake.colour.exposure import luminance_from_ev
-from skybake.formats.preview import Show, check_preview, open_preview
+from skybake.baking.show import scene_ev, show_scene
+from skybake.formats.preview import check_preview, open_preview
 from skybake.formats.spec import Attribute, MapSpec
 from skybake.formats.writer import MapWriter, check_map_path, open_maps
 from skybake.preset import Planet, load_preset
 from skybake.projection.cubemap import FACES
 from skybake.projection.equirect import column_bearings, row_zeniths
+from skybake.transport.kernel import runs_alone
 
 BAND_ROWS = 128
-PREVIEW_WIDTH = 1024
 HALF_LARGEST = 60000.0
 HALF_SMALLEST = 2.0**-14
 
 Progress = Callable[[float], None]
 
 
-@dataclass(frozen=True)
-class Baked:
-    """What was baked.
+@dataclass(frozen=True, kw_only=True)
+class Baked(Light):
+    """What was baked, beside its `Light`.
 
     Attributes
     ----------
     files : tuple of Path
         The map, one file or six.
-    sun_direction : tuple of float
-        Unit vector toward the sun; +Y up, -Z north, +X east.
-    direct_normal_illuminance, direct_illuminance : float
-        By the sun's disc, on a plane that faces it and on a horizontal one. [lx]
-    sky_illuminance : float
-        By the sky, on a horizontal plane. [lx]
     white_luminance : float
         Luminance that a pixel value of 1 stands for. [cd m⁻²]
     pixel : str
@@ -61,10 +56,6 @@ class Baked:
     """
 
     files: tuple[Path, ...]
-    sun_direction: tuple[float, float, float]
-    direct_normal_illuminance: float
-    direct_illuminance: float
-    sky_illuminance: float
     white_luminance: float
     pixel: str
     preview: Path | None
@@ -80,6 +71,7 @@ def bake(
     preview: Path | str | None = None,
     preview_ev: float | None = None,
     preview_view: str = "aces2",
+    attributes: Mapping[str, Attribute] | None = None,
     progress: Progress | None = None,
     notice: Callable[[str], None] | None = None,
 ) -> Baked:
@@ -100,6 +92,9 @@ def bake(
         Its exposure value; by default chosen from the picture.
     preview_view : {"aces2", "aces1"}, optional
         Its rendering.
+    attributes : mapping of str to Attribute, optional
+        What the files shall say beside their light and their recipe, such as
+        ``{"skybake:time": "2026-06-21T04:00:00Z"}``.
     progress : callable, optional
         Called with the share that is done, from 0 to 1.
     notice : callable, optional
@@ -117,25 +112,59 @@ def bake(
     """
     settings = settings or MapSettings()
     planet = preset if isinstance(preset, Planet) else load_preset(preset)
-    paths = map_paths(Path(output) if output else default_path(planet, settings), settings)
+    output = Path(output) if output else default_path(planet, settings)
     preview = None if preview is None else Path(preview)
-    for path in paths:
-        check_map_path(path)
-    if preview is not None:
-        check_preview(preview, preview_view)
+    check_targets(output, settings, preview, preview_view)
     scene = Scene(planet, settings)
     if notice is not None and not scene.sky.is_solved:
         notice("solving for the light in this atmosphere, once")
-    x, y, z = scene.sky.sun_direction.tolist()
-    normal, horizontal = scene.sun_illuminance()
-    sky_illuminance = scene.sky_illuminance()
-    attributes: dict[str, Attribute] = {
-        "skybake:sunDirection": (x, y, z),
-        "skybake:directNormalIlluminance": normal,
-        "skybake:directIlluminance": horizontal,
-        "skybake:skyIlluminance": sky_illuminance,
-        "skybake:preset": planet.name,
-        "skybake:recipe": json.dumps({"map": settings.recipe(), "preset": planet.recipe}),
+    return bake_scene(
+        scene,
+        output,
+        preview=preview,
+        preview_ev=preview_ev,
+        preview_view=preview_view,
+        attributes=attributes,
+        progress=progress,
+    )
+
+
+def check_targets(
+    output: Path, settings: MapSettings, preview: Path | None = None, preview_view: str = "aces2"
+) -> None:
+    """Raise what can be said of a map's files before anything is computed.
+
+    Raises
+    ------
+    InputError
+        If a suffix names no format, or the format cannot hold what is asked for.
+    OutputError
+        If a file cannot be written under its name.
+    """
+    for path in map_paths(output, settings):
+        check_map_path(path)
+    if preview is not None:
+        check_preview(preview, preview_view)
+
+
+def bake_scene(
+    scene: Scene,
+    output: Path,
+    *,
+    preview: Path | None = None,
+    preview_ev: float | None = None,
+    preview_view: str = "aces2",
+    attributes: Mapping[str, Attribute] | None = None,
+    progress: Progress | None = None,
+) -> Baked:
+    """Bake the map of a scene; parameters and errors are those of `bake`."""
+    planet, settings = scene.planet, scene.settings
+    paths = map_paths(output, settings)
+    light = light_of_scene(scene)
+    attributes = {
+        **attributes_from_light(light),
+        **recipe_attributes(planet, settings),
+        **(attributes or {}),
     }
     panels = dict(zip(paths, _panels(scene), strict=True))
     pixel = _pixel(scene, settings, max(panel.peak for panel in panels.values()))
@@ -158,13 +187,11 @@ def bake(
         writers = stack.enter_context(open_maps(specs))
         _write(panels, writers, progress)
         if show:
-            preview_ev = _show(scene, show, preview_ev)
+            preview_ev = scene_ev(scene) if preview_ev is None else preview_ev
+            show_scene(scene, show, preview_ev)
     return Baked(
+        **vars(light),
         files=paths,
-        sun_direction=(x, y, z),
-        direct_normal_illuminance=normal,
-        direct_illuminance=horizontal,
-        sky_illuminance=sky_illuminance,
         white_luminance=settings.white_luminance,
         pixel=pixel if paths[0].suffix.lower() == ".exr" else "rgbe",
         preview=preview,
@@ -211,28 +238,20 @@ def _write(
         for first in range(0, panel.height, BAND_ROWS)
     ]
     with ThreadPoolExecutor(1) as ahead:
-        pending = ahead.submit(panels[bands[0][0]].rows, *bands[0][1:])
+        submit = _compute_now if runs_alone() else ahead.submit
+        pending = submit(panels[bands[0][0]].rows, *bands[0][1:])
         for i, (path, first, last) in enumerate(bands):
             rows = pending.result()
             if i + 1 < len(bands):
                 following, *span = bands[i + 1]
-                pending = ahead.submit(panels[following].rows, *span)
+                pending = submit(panels[following].rows, *span)
             writers[path].write_rows(first, last, rows)
             if progress is not None:
                 progress((i + 1) / len(bands))
 
 
-def _show(scene: Scene, show: Show, ev: float | None) -> float:
-    """Make a small display-referred picture of a scene and return its exposure value."""
-    settings = scene.settings
-    if ev is None:
-        # The same survey for all projections and sizes, so that they are shown alike.
-        survey = EquirectPanel(scene, 2 * SURVEY_ROWS).rows(0, SURVEY_ROWS)
-        ev = legible_ev(survey, settings.space, settings.white_luminance)
-    if settings.projection == "equirect":
-        panel: Panel = EquirectPanel(scene, min(settings.width, PREVIEW_WIDTH))
-    else:
-        panel = CrossPanel(scene, min(settings.width, PREVIEW_WIDTH // 4))
-    pixels = panel.rows(0, panel.height)
-    show(pixels, settings.space, settings.white_luminance / luminance_from_ev(ev))
-    return ev
+def _compute_now(work: Callable[..., Pixels], *arguments: Any) -> Future[Pixels]:
+    """Take the place of a thread where all of them are busy."""
+    done: Future[Pixels] = Future()
+    done.set_result(work(*arguments))
+    return done

@@ -41,6 +41,11 @@ def luminance_from_ev(ev: float) -> float:
     return 1.2 * math.pow(2.0, ev)
 
 
+def ev_from_luminance(luminance: float) -> float:
+    """Exposure value that brings a luminance [cd m⁻²] to 1; inverse of `luminance_from_ev`."""
+    return math.log2(luminance / 1.2)
+
+
 def luminance_from_units(units: str) -> float:
     """Luminance of an RGB of (1, 1, 1) by the name of the unit, in cd m⁻².
 

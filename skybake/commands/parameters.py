@@ -9,12 +9,17 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
+from contextlib import suppress
+from datetime import date
 from pathlib import Path
+from typing import TypeVar
 
 import click
 
 from skybake.errors import InputError
-from skybake.units import parse_angle, parse_length
+from skybake.sequence.frames import parse_frames
+from skybake.sequence.ramp import Ramp
+from skybake.units import parse_angle, parse_duration, parse_length
 
 PROJECTIONS = ("equirect", "cubemap")
 CUBE_LAYOUTS = ("faces", "cross", "exr")
@@ -24,6 +29,8 @@ PIXELS = ("auto", "half", "float")
 SUN_DISCS = ("include", "exclude", "only")
 METHODS = ("full", "hillaire", "march")
 VIEWS = ("aces2", "aces1")
+
+Paths = TypeVar("Paths", Path | None, tuple[Path, ...])
 
 # The tolerance is for 5400arcmin, which is 90deg but for the last bit.
 _RIGHT_ANGLE = math.pi / 2 + 1e-9
@@ -42,6 +49,38 @@ def elevation(text: str) -> float:
 def bearing(text: str) -> float:
     """Read an angle. [rad]"""
     return _parse(text, parse_angle)
+
+
+def latitude(text: str) -> float:
+    """Read a latitude such as ``48.8566``, ``54.8S`` or ``-54.8deg``. [rad]"""
+    angle = _hemisphere(text, "N", "S")
+    if abs(angle) > _RIGHT_ANGLE:
+        raise click.BadParameter(f"must be from -90deg to 90deg, got {text}")
+    return angle
+
+
+def longitude(text: str) -> float:
+    """Read a longitude, -180deg to 360deg in the east; it becomes -180deg to 180deg. [rad]"""
+    angle = _hemisphere(text, "E", "W")
+    if not -2 * _RIGHT_ANGLE <= angle <= 4 * _RIGHT_ANGLE:
+        raise click.BadParameter(f"must be from -180deg to 360deg, got {text}")
+    return math.remainder(angle, 2 * math.pi)
+
+
+def solar_longitude(text: str) -> float:
+    """Read an angle from 0deg to 360deg. [rad]"""
+    angle = _parse(text, parse_angle)
+    if not 0.0 <= angle <= 4 * _RIGHT_ANGLE:
+        raise click.BadParameter(f"must be from 0deg to 360deg, got {text}")
+    return angle
+
+
+def day(text: str) -> date:
+    """Read a date such as ``2026-06-21``."""
+    if re.fullmatch(r"\d{4}-\d\d-\d\d", text, re.ASCII):
+        with suppress(ValueError):
+            return date.fromisoformat(text)
+    raise click.BadParameter(f"must be a date such as 2026-06-21, got {text!r}")
 
 
 def length(text: str) -> float:
@@ -79,20 +118,66 @@ def exposure(text: str) -> float | None:
     return number
 
 
+def sequence_exposure(text: str) -> float | str:
+    """Read an exposure value, ``auto`` or ``adapt``."""
+    if text == "adapt":
+        return text
+    number = exposure(text)
+    return "auto" if number is None else number
+
+
+def ramp(read: Callable[[str], float]) -> Callable[[str], Ramp]:
+    """Return what reads a value, or two with ``..`` between."""
+
+    def read_ramp(text: str) -> Ramp:
+        first, dots, last = text.partition("..")
+        return Ramp(read(first), read(last if dots else first))
+
+    return read_ramp
+
+
+def frames(text: str) -> tuple[int, ...]:
+    """Read frame numbers such as ``1-96`` or ``1-100x5,150``."""
+    try:
+        return parse_frames(text)
+    except InputError as error:
+        raise click.BadParameter(str(error).removeprefix("frames: ")) from error
+
+
+def duration(text: str) -> float:
+    """Read a duration such as ``10min``, greater than 0. [s]"""
+    seconds = _parse(text, parse_duration)
+    if not seconds > 0.0:
+        raise click.BadParameter(f"must be greater than 0s, got {text}")
+    return seconds
+
+
 def with_suffix(
     *suffixes: str,
-) -> Callable[[click.Context, click.Parameter, Path | None], Path | None]:
-    """Return a callback of an option that checks the suffix of a path."""
+) -> Callable[[click.Context, click.Parameter, Paths], Paths]:
+    """Return a callback of an option that checks the suffix of its path or paths."""
 
-    def check(context: click.Context, option: click.Parameter, path: Path | None) -> Path | None:
-        if path is not None and path.suffix.lower() not in suffixes:
-            known = " or ".join(suffixes)
-            raise click.BadParameter(
-                f"{path}: suffix must be {known}, got {path.suffix!r}", context, option
-            )
-        return path
+    def check(context: click.Context, option: click.Parameter, value: Paths) -> Paths:
+        for path in value if isinstance(value, tuple) else (value,):
+            if path is not None and path.suffix.lower() not in suffixes:
+                known = " or ".join(suffixes)
+                raise click.BadParameter(
+                    f"{path}: suffix must be {known}, got {path.suffix!r}", context, option
+                )
+        return value
 
     return check
+
+
+def _hemisphere(text: str, positive: str, negative: str) -> float:
+    """Read an angle that may end in the letter of a hemisphere instead of having a sign. [rad]"""
+    letter = text.strip()[-1:]
+    if letter not in (positive, negative):
+        return _parse(text, parse_angle)
+    angle = _parse(text.strip()[:-1], parse_angle)
+    if text.strip()[0] in "+-":
+        raise click.BadParameter(f"must have a sign or {letter}, not both, got {text}")
+    return angle if letter == positive else -angle
 
 
 def _parse(text: str, parse: Callable[[str], float]) -> float:

@@ -35,9 +35,10 @@ def list_() -> None:
 )
 @change_options
 def show(name: str, resolved: bool, **options: Any) -> None:
-    """Print the preset NAME as TOML, with the source of every value.
+    """Print the preset NAME as TOML: its own file, with the source of every value in it.
 
-    With --resolved, or with a change, what it extends is merged into it.
+    With --resolved, or with a change, what it extends is merged into it, and each key from
+    there names the file.
 
     \b
     Examples:
@@ -59,7 +60,8 @@ def check(name: str, **options: Any) -> None:
     """Tell every fault of a preset, or figures that follow from it.
 
     Each fault is a line with the file and the key; the exit status is then 1. Otherwise it prints
-    optical depths, single scattering albedos, columns, visibility and the light of the sun.
+    optical depths, single scattering albedos, columns, visibility and the light of the sun, and
+    says so if the air is too thick to render.
 
     \b
     Examples:
@@ -136,9 +138,10 @@ def plot(name: str, output: Path | None, **options: Any) -> None:
     """
     planet = load_world(name, options)
     try:
+        from skybake.baking.paths import world_name
         from skybake.baking.plot import plot_planet
     except ImportError as error:
         raise InputError("plot: needs matplotlib, as from pip install 'skybake[plot]'") from error
-    output = output or Path(f"{planet.name}.png")
+    output = output or Path(f"{world_name(planet)}.png")
     plot_planet(planet, output)
     click.echo(output)

@@ -6,7 +6,9 @@ from pathlib import Path
 
 import click
 
+from skybake.commands.memory import check_memory
 from skybake.commands.parameters import VIEWS, exposure, with_suffix
+from skybake.errors import InputError
 
 
 @click.command()
@@ -46,8 +48,12 @@ def preview(source: Path, output: Path | None, ev: float | None, view: str, quie
       skybake preview sky.exr
       skybake preview sky.exr -o dark.png --ev 12 --view aces1
     """
+    check_memory()
+
     from skybake.baking.preview import preview_file
 
+    if not source.name:
+        raise InputError(f"{source}: must be an image file, got a folder")
     output = output or source.with_suffix(".png")
     ev = preview_file(source, output, ev=ev, view=view)
     if not quiet:

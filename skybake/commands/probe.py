@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from skybake.commands import parameters, world
+from skybake.commands.memory import check_memory
 from skybake.errors import InputError
 
 
@@ -79,6 +80,8 @@ def probe(**options: Any) -> None:
       skybake probe --altitude 10km --directions in.csv --wavelengths 680,550,440 --per-irradiance
       skybake probe --sun 10deg --method reference --samples 2000
     """
+    check_memory()
+
     import numpy as np
 
     from skybake.baking.probe import default_directions, probe, read_directions

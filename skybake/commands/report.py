@@ -13,18 +13,24 @@ import click
 
 if TYPE_CHECKING:
     from skybake.baking import Baked, MapSettings
+    from skybake.commands.moment import Moment
 
 _STEPS = 1000
 
 
 def announce(output: Path) -> None:
     """Say what is baked, and on the first run why it takes longer."""
-    from skybake.transport.kernel import is_warm
+    announce_kernels()
+    if not sys.stderr.isatty():
+        notice(f"baking {output}")
+
+
+def announce_kernels() -> None:
+    """Say on the first run why it takes longer."""
+    from skybake.transport.cache import is_warm
 
     if not is_warm():
         notice("compiling kernels, once for this version")
-    if not sys.stderr.isatty():
-        notice(f"baking {output}")
 
 
 def notice(line: str) -> None:
@@ -57,16 +63,21 @@ def print_summary(baked: Baked, seconds: float) -> None:
         click.echo(f"{baked.clamped} negative values, out of gamut, were stored as 0")
 
 
-def print_json(baked: Baked, preset: str, settings: MapSettings, seconds: float) -> None:
+def print_json(
+    baked: Baked, preset: str, settings: MapSettings, seconds: float, when: Moment | None
+) -> None:
     """Print one JSON object on one line."""
-    click.echo(json.dumps(result(baked, preset, settings, seconds)))
+    click.echo(json.dumps(result(baked, preset, settings, seconds, when)))
 
 
-def result(baked: Baked, preset: str, settings: MapSettings, seconds: float) -> dict[str, Any]:
+def result(
+    baked: Baked, preset: str, settings: MapSettings, seconds: float, when: Moment | None
+) -> dict[str, Any]:
     """Return what ``--json`` prints, see docs/cli.md."""
     return {
         "files": [str(path) for path in baked.files],
         "preset": preset,
+        "time": None if when is None else when.attributes.get("skybake:time"),
         "sun_direction": list(baked.sun_direction),
         "direct_illuminance_lux": baked.direct_illuminance,
         "direct_normal_illuminance_lux": baked.direct_normal_illuminance,

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 BESIDE = Path("beside-the-map.png")
 """Stands for the default name of a preview."""
 
+_PICTURES = ("preview", "contact_sheet", "animate")
+
 EQUIRECT_WIDTH = 2048
 CUBEMAP_EDGE = 1024
 
@@ -29,14 +31,19 @@ def check_together(context: click.Context) -> None:
     """
     options = context.params
     is_radiance = options["output"] is not None and options["output"].suffix.lower() == ".hdr"
+    shown = [name for name in _PICTURES if name in options]
+    has_pictures = any(options[name] is not None for name in shown)
+    pictures = " or ".join(f"--{name.replace('_', '-')}" for name in shown)
     needs = {
         "cube_layout": (options["projection"] == "cubemap", "--projection cubemap"),
         "pixel": (not is_radiance, "an .exr output"),
         "compression": (not is_radiance, "an .exr output"),
-        "preview_ev": (options["preview"] is not None, "--preview"),
-        "view": (options["preview"] is not None, "--preview"),
+        "preview_ev": (has_pictures, pictures),
+        "view": (has_pictures, pictures),
         "units": (options["ev"] is None, "no --ev beside it"),
     }
+    if options.get("exposure_curve") is not None:
+        needs |= dict.fromkeys(("units", "ev"), (False, "no --exposure-curve beside it"))
     for parameter in context.command.params:
         met, need = needs.get(parameter.name or "", (True, ""))
         if not met and options[parameter.name or ""] is not None:

@@ -56,18 +56,28 @@ def replace_when_whole(path: Path) -> Iterator[Path]:
         temporary.replace(target)
 
 
-@contextmanager
-def _hidden_folder(target: Path) -> Iterator[Path]:
-    """Yield a locked folder beside a target and remove it, and those that dead processes left."""
-    # A digest, because the target's name may already be as long as names can be.
-    prefix = f".skybake-{hashlib.sha256(os.fsencode(target.name)).hexdigest()[:12]}-"
-    for leftover in target.parent.glob(f"{prefix}*"):
+def remove_leftovers(path: Path) -> None:
+    """Remove what dead processes left beside a target, which may be whole nevertheless."""
+    target = Path(os.path.realpath(path))
+    for leftover in target.parent.glob(f"{_prefix(target)}*"):
         with suppress(OSError):
             lock = _lock(leftover)
             if lock is not None:
                 shutil.rmtree(leftover, ignore_errors=True)
                 os.close(lock)
-    folder = target.with_name(f"{prefix}{secrets.token_hex(8)}")
+
+
+def _prefix(target: Path) -> str:
+    """How the names of a target's hidden folders begin."""
+    # A digest, because the target's name may already be as long as names can be.
+    return f".skybake-{hashlib.sha256(os.fsencode(target.name)).hexdigest()[:12]}-"
+
+
+@contextmanager
+def _hidden_folder(target: Path) -> Iterator[Path]:
+    """Yield a locked folder beside a target and remove it, and those that dead processes left."""
+    remove_leftovers(target)
+    folder = target.with_name(f"{_prefix(target)}{secrets.token_hex(8)}")
     lock = None
     # Made within the block: a signal may raise between any two lines.
     try:
@@ -141,7 +151,19 @@ def check_target(path: Path) -> None:
         If a file cannot be written under that name.
     """
     with _faults_of(path):
-        _check(path, Path(os.path.realpath(path)))
+        target = Path(os.path.realpath(path))
+        if not is_utf8(target):
+            raise OutputError(f"{path}: must be UTF-8, got bytes that are not")
+        _check(path, target)
+
+
+def is_utf8(path: Path) -> bool:
+    """Whether libraries that take UTF-8 only can open a path."""
+    try:
+        str(path).encode()
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 @contextmanager

@@ -68,6 +68,18 @@ def write_preview(
         show(pixels, colour_space, gain)
 
 
+def write_picture(path: Path, pixels: npt.NDArray[np.uint8]) -> None:
+    """Write code values of sRGB, shape (row, column, 3), as PNG.
+
+    Raises
+    ------
+    OutputError
+        If the file cannot be written.
+    """
+    with replace_when_whole(path) as temporary:
+        _write_png(path, temporary, pixels)
+
+
 @contextmanager
 def open_preview(path: Path, *, view: str = "aces2", max_width: int = 1024) -> Iterator[Show]:
     """Yield ``show(pixels, colour_space, gain)``; the picture appears when the block ends.
@@ -121,7 +133,9 @@ def display_values(
     return values
 
 
-def _write_png(path: Path, temporary: Path, shown: npt.NDArray[np.float32]) -> None:
+def _write_png(
+    path: Path, temporary: Path, shown: npt.NDArray[np.float32] | npt.NDArray[np.uint8]
+) -> None:
     spec = OpenImageIO.ImageSpec(shown.shape[1], shown.shape[0], 3, "uint8")
     spec["oiio:ColorSpace"] = "srgb_rec709_display"
     spec["oiio:dither"] = 1

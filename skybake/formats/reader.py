@@ -12,6 +12,10 @@ import OpenImageIO
 
 from skybake.errors import InputError
 from skybake.formats.hdr import RADIANCE_EFFICACY, read_header
+from skybake.formats.partial import is_utf8
+
+_BAND_ROWS = 256
+_FORMATS = {".exr": "openexr", ".hdr": "hdr"}
 
 
 def read_image(path: Path) -> tuple[npt.NDArray[np.float32], dict[str, Any]]:
@@ -35,11 +39,7 @@ def read_image(path: Path) -> tuple[npt.NDArray[np.float32], dict[str, Any]]:
     InputError
         If the file is missing, damaged, of integers, without R, G, B, or not finite.
     """
-    if not path.is_file():
-        raise InputError(f"{path}: must be an image file, got {_what_instead(path)}")
-    source = OpenImageIO.ImageInput.open(str(path))
-    if source is None:
-        raise InputError(f"{path}: must be an image, got {_first_line(OpenImageIO.geterror())}")
+    source = _open(path)
     spec = source.spec()
     names = [name.upper() for name in spec.channelnames]
     if spec.format.basetype not in {OpenImageIO.HALF, OpenImageIO.FLOAT}:
@@ -54,10 +54,53 @@ def read_image(path: Path) -> tuple[npt.NDArray[np.float32], dict[str, Any]]:
     source.close()
     if not np.isfinite(pixels).all():
         raise InputError(f"{path}: pixels must be finite, got NaN or infinity")
-    attributes: dict[str, Any] = {a.name: a.value for a in spec.extra_attribs}
+    return pixels, _attributes(path, source)
+
+
+def read_whole_attributes(path: Path) -> dict[str, Any]:
+    """Return the attributes of a map, as `read_image` does, after reading all of its rows.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, damaged, or not what its suffix says.
+    """
+    source = _open(path)
+    if source.format_name() != _FORMATS.get(path.suffix.lower()):
+        raise InputError(f"{path}: must be what its suffix says, got {source.format_name()}")
+    if not _can_read_rows(source):
+        raise InputError(f"{path}: must be whole, got {_first_line(source.geterror())}")
+    source.close()
+    return _attributes(path, source)
+
+
+def _can_read_rows(source: OpenImageIO.ImageInput) -> bool:
+    spec = source.spec()
+    with suppress(RuntimeError):
+        return all(
+            source.read_scanlines(first, min(first + _BAND_ROWS, spec.height), 0, 0, spec.nchannels)
+            is not None
+            for first in range(0, spec.height, _BAND_ROWS)
+        )
+    return False
+
+
+def _open(path: Path) -> OpenImageIO.ImageInput:
+    if not path.is_file():
+        raise InputError(f"{path}: must be an image file, got {_what_instead(path)}")
+    if not is_utf8(path):
+        raise InputError(f"{path}: must be UTF-8, got bytes that are not")
+    source = OpenImageIO.ImageInput.open(str(path))
+    if source is None:
+        raise InputError(f"{path}: must be an image, got {_first_line(OpenImageIO.geterror())}")
+    return source
+
+
+def _attributes(path: Path, source: OpenImageIO.ImageInput) -> dict[str, Any]:
+    attributes: dict[str, Any] = {a.name: a.value for a in source.spec().extra_attribs}
     if source.format_name() == "hdr":
         attributes |= _radiance_attributes(path)
-    return pixels, attributes
+    return attributes
 
 
 def _radiance_attributes(path: Path) -> dict[str, Any]:

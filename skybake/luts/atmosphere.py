@@ -1,17 +1,11 @@
-"""All tables of an atmosphere: what depends neither on the observer nor on the sun.
-
-They are built once and kept on disk as plain arrays, named by everything that
-they depend on. A file is a SHA-256 digest of the rest, then arrays in numpy's own
-format: their names, and each of them.
-"""
+"""All tables of an atmosphere: what depends neither on the observer nor on the sun."""
 
 from __future__ import annotations
 
 import hashlib
-import os
-from contextlib import suppress
-from io import BytesIO
-from pathlib import Path
+import threading
+from collections import OrderedDict
+from concurrent.futures import Future
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,17 +15,21 @@ from skybake.luts.field import DiffuseField, altitude_layers, sun_bins, sun_fact
 from skybake.luts.grid import ORDER
 from skybake.luts.harmonics import build_harmonics
 from skybake.luts.solver import solve_field
+from skybake.luts.store import (
+    arrays_from_content,
+    content_from_arrays,
+    read_tables,
+    stored_tables,
+    write_tables,
+)
 from skybake.luts.transmittance import build_columns
 from skybake.optics.legendre import Truncation, channel_groups, keep_peaks, truncate_peaks
 from skybake.optics.lobes import Lobes, split_phase
 from skybake.optics.medium import Array, Medium, pad_wavelengths
-from skybake.transport.kernel import cache_directory
 from skybake.transport.shells import altitude_shells
 
-LARGEST_STORE = 1 << 30
-"""Size beyond which the tables unused for longest are removed. [byte]"""
-
-_DIGEST_SIZE = hashlib.sha256().digest_size
+KEPT = 4
+"""Atmospheres that stay in memory: of a sequence all maps share one, or each has its own."""
 
 
 class Atmosphere(NamedTuple):
@@ -82,38 +80,78 @@ def build_atmosphere(medium: Medium, method: str) -> Atmosphere:
     return Atmosphere(cut, altitude_shells(medium), columns, solve(cut, columns), lobes)
 
 
+_recent: OrderedDict[str, Future[Atmosphere]] = OrderedDict()
+_lock = threading.Lock()
+
+
 def load_atmosphere(medium: Medium, method: str) -> Atmosphere:
-    """Return the tables of a medium from disk, or build and keep them.
+    """Return the tables of a medium from memory or disk, or build and keep them.
 
     A file that is missing or not, bit by bit, what was once written is made anew;
-    where none can be written the tables are built every time.
+    where none can be written the tables are built by every process.
     """
-    path = _path(medium, method)
-    if path is None:
-        return build_atmosphere(medium, method)
-    arrays = _read(path)
+    key = atmosphere_key(medium, method)
+    with _lock:
+        kept = _recent.pop(key, None)
+        pending = _recent[key] = kept or Future()
+        while len(_recent) > KEPT:
+            _recent.popitem(last=False)
+    if kept is None:
+        # Of several threads that need the same tables one makes them, and the others wait.
+        try:
+            pending.set_result(_read_or_build(medium, method, key))
+        except BaseException as error:
+            _recent.pop(key, None)
+            pending.set_exception(error)
+            raise
+    return pending.result()
+
+
+def _read_or_build(medium: Medium, method: str, key: str) -> Atmosphere:
+    arrays = read_tables(key)
     if arrays is not None:
         return _from_arrays(medium, arrays)
     atmosphere = build_atmosphere(medium, method)
-    _store(path, atmosphere)
+    write_tables(key, _to_arrays(atmosphere))
     return atmosphere
+
+
+def atmosphere_content(medium: Medium, method: str) -> bytes:
+    """Return the tables of a medium as a file holds them, for another machine."""
+    return content_from_arrays(_to_arrays(load_atmosphere(medium, method)))
+
+
+def adopt_atmosphere(medium: Medium, method: str, content: bytes) -> None:
+    """Keep tables in memory that another machine has built, see `atmosphere_content`.
+
+    Content that is not as it was made is left alone: the tables are then built here.
+    """
+    key = atmosphere_key(medium, method)
+    arrays = None if key in _recent else arrays_from_content(content)
+    if arrays is None:
+        return
+    adopted: Future[Atmosphere] = Future()
+    adopted.set_result(_from_arrays(medium, arrays))
+    with _lock:
+        _recent[key] = adopted
+
+
+def forget_atmospheres() -> None:
+    """Free the memory that tables take; they stay on disk."""
+    _recent.clear()
 
 
 def is_stored(medium: Medium, method: str) -> bool:
     """Whether `load_atmosphere` would find a file."""
-    path = _path(medium, method)
-    return path is not None and path.exists()
+    return stored_tables(atmosphere_key(medium, method)) is not None
 
 
-def _path(medium: Medium, method: str) -> Path | None:
-    """File of a medium's tables, named by its arrays and by the code that makes them."""
-    directory = cache_directory()
-    if directory is None:
-        return None
+def atmosphere_key(medium: Medium, method: str) -> str:
+    """Name of a medium's tables: a digest of everything that they depend on but the code."""
     digest = hashlib.sha256(f"{method} {medium.r_bottom!r} {medium.r_top!r}".encode())
     for array in medium[2:]:
         digest.update(f"{array.shape}".encode() + np.ascontiguousarray(array).tobytes())
-    return directory / "atmospheres" / f"{digest.hexdigest()[:32]}.tables"
+    return digest.hexdigest()[:32]
 
 
 def _to_arrays(atmosphere: Atmosphere) -> dict[str, Any]:
@@ -157,57 +195,3 @@ def _from_arrays(medium: Medium, arrays: dict[str, Any]) -> Atmosphere:
     cut = Truncation(medium=scaled, **cut_arrays)
     lobes = Lobes(arrays["lobe_curves"], arrays["lobe_weights"])
     return Atmosphere(cut, arrays["shells"], arrays["columns"], field, lobes)
-
-
-def _read(path: Path) -> dict[str, Any] | None:
-    """Return the arrays of a file, or None if it is missing or not as it was written.
-
-    The digest is checked before anything else is read: damaged arrays can fail in
-    any way, or only look right.
-    """
-    try:
-        whole = path.read_bytes()
-    except OSError:
-        return None
-    if _digest(memoryview(whole)[_DIGEST_SIZE:]) != whole[:_DIGEST_SIZE]:
-        return None
-    # The time of last use decides what goes first when the folder is full.
-    with suppress(OSError):
-        os.utime(path)
-    stream = BytesIO(whole)
-    stream.seek(_DIGEST_SIZE)
-    names = np.load(stream, allow_pickle=False)
-    return {str(name): np.load(stream, allow_pickle=False) for name in names}
-
-
-def _store(path: Path, atmosphere: Atmosphere) -> None:
-    """Write tables beside their name and rename them; a full disk only costs the reuse."""
-    arrays = _to_arrays(atmosphere)
-    stream = BytesIO()
-    for array in (np.array(list(arrays)), *arrays.values()):
-        np.save(stream, array, allow_pickle=False)
-    temporary = path.with_name(f".{path.stem}-{os.getpid()}{path.suffix}")
-    with suppress(OSError):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        try:
-            with temporary.open("wb") as file:
-                file.write(_digest(stream.getbuffer()))
-                file.write(stream.getbuffer())
-            temporary.replace(path)
-        finally:
-            temporary.unlink(missing_ok=True)
-        _remove_oldest(path.parent)
-
-
-def _digest(content: memoryview) -> bytes:
-    return hashlib.sha256(content).digest()
-
-
-def _remove_oldest(folder: Path) -> None:
-    """Keep the folder below `LARGEST_STORE`."""
-    files = sorted(folder.glob("*.tables"), key=lambda file: file.stat().st_mtime, reverse=True)
-    total = 0
-    for file in files:
-        total += file.stat().st_size
-        if total > LARGEST_STORE:
-            file.unlink(missing_ok=True)

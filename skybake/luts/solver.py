@@ -86,13 +86,7 @@ def solve_field(cut: Truncation, columns: Array) -> DiffuseField:
     M. L. Adams and E. W. Larsen, "Fast iterative methods for discrete-ordinates
     particle transport calculations", Prog. Nucl. Energy 40, 2002, section II.
     """
-    depth = vertical_depth(cut)
-    if depth > MAX_DEPTH:
-        raise InputError(
-            f"multiple scattering: optical depth of the air must be at most {MAX_DEPTH:g} at every "
-            f"wavelength for --method full, got {depth:.3g}; use probe --method reference, or "
-            "--method hillaire"
-        )
+    check_depth(cut)
     grid = build_grid(cut)
     coarse_grid = grid._replace(azimuth=azimuths(COARSE_ORDER))
     traced = _trace_grid(cut, grid)
@@ -113,6 +107,23 @@ def solve_field(cut: Truncation, columns: Array) -> DiffuseField:
         if not np.isfinite(change).all():
             break
     raise _no_convergence(MAX_PASSES, TOLERANCE, float(change.max()))
+
+
+def check_depth(cut: Truncation) -> None:
+    """Refuse air that is too thick to be solved for.
+
+    Raises
+    ------
+    InputError
+        If its vertical optical depth is above `MAX_DEPTH` at any wavelength.
+    """
+    depth = vertical_depth(cut)
+    if depth > MAX_DEPTH:
+        raise InputError(
+            "multiple scattering: optical depth of the air without forward peaks must be at most "
+            f"{MAX_DEPTH:g} at every wavelength for --method full, got {depth:.3g}; use probe "
+            "--method reference, or --method hillaire"
+        )
 
 
 def _settle(

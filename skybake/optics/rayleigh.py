@@ -110,7 +110,10 @@ def _methane(wavelengths: Array) -> tuple[Array, Array]:
 
 
 def _hydrogen(wavelengths: Array) -> tuple[Array, Array]:
-    """Peck & Huang (1977), at 0 deg C; anisotropy of Bridge & Buckingham (1966), 632.8 nm."""
+    """Peck & Huang (1977), at 0 deg C; anisotropy after Bridge & Buckingham (1966), 632.8 nm.
+
+    The latter is from memory; the depolarisation of 0.02 by Penndorf (1957) gives 1.034.
+    """
     inverse_square = (1e-3 * wavelengths) ** -2.0  # um⁻²
     at_freezing = 1e-6 * (14895.6 / (180.7 - inverse_square) + 4903.7 / (92.0 - inverse_square))
     return at_freezing * _FROM_FREEZING, np.full(len(wavelengths), 1.0324)

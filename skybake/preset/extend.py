@@ -82,6 +82,17 @@ def load_document(name_or_path: str | Path, overrides: Overrides = ()) -> Docume
     return document
 
 
+def base_name(name_or_path: str | Path) -> str:
+    """Return the name of what a preset extends in the end, its own if it extends nothing.
+
+    Raises
+    ------
+    PresetError
+        If a file cannot be read or extends itself.
+    """
+    return _chain(find_preset(name_or_path))[-1][0].stem
+
+
 def _listed(overrides: Overrides) -> list[Override]:
     if isinstance(overrides, Mapping):
         return [Override(key, value) for key, value in overrides.items()]

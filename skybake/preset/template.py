@@ -64,7 +64,8 @@ def preset_template(name: str, base: str) -> str:
     body = {key: value for key, value in data.items() if key not in ("title", "data_quality")}
     return f"""\
 # A world of your own. It says only what differs from what it extends: take the # from a line
-# and change its value. The value "none" takes away a key or a whole constituent.
+# and change its value. The value "none" takes a key away. To take away a whole constituent, delete
+# its table here, head and all, and write above the first table: constituents.NAME = "none"
 # Check it by: skybake presets check {name}.toml
 extends = {toml_value(file)}
 title = {toml_value(f"{name}, after {base}")}

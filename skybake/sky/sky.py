@@ -211,17 +211,18 @@ class Sky:
     @property
     def is_solved(self) -> bool:
         """Whether the tables of this atmosphere lie on disk."""
-        return is_stored(self.medium, self._table_method)
+        return is_stored(self.medium, self.table_method)
 
     @property
-    def _table_method(self) -> str:
+    def table_method(self) -> str:
+        """Method of the tables that are looked up."""
         # Marching needs no tables; its sun disc looks up the columns that all methods share.
         return "full" if self.method == "full" else "hillaire"
 
     @cached_property
     def atmosphere(self) -> Atmosphere:
         """The tables of the air, which depend neither on the observer nor on the sun."""
-        return load_atmosphere(self.medium, self._table_method)
+        return load_atmosphere(self.medium, self.table_method)
 
     @property
     def _phase(self) -> Array:

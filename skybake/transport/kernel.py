@@ -1,27 +1,38 @@
-"""The one place that decides how kernels are compiled, cached and threaded."""
+"""The one place that decides how kernels are compiled and threaded."""
 
 from __future__ import annotations
 
 import functools
 import hashlib
 import os
+import pickle
+import re
 import subprocess
 import sys
 import threading
-import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import llvmlite.binding
 import numba
+from numba.core.caching import _Cache
+from numba.core.compiler import CompileResult
 from numba.core.runtime.nrt import rtsys
+from numba.core.serialize import dumps
+
+from skybake.transport.cache import (
+    KERNEL_SUFFIX,
+    cache_directory,
+    read_sealed,
+    warn_of_full_disk,
+    write_sealed,
+)
 
 # Without nnan and ninf: kernels may rely on the meaning of inf and nan.
 FAST_MATH = {"nsz", "arcp", "contract", "afn", "reassoc"}
-
-_KERNEL_PACKAGES = ("optics", "transport", "luts", "sky", "projection", "reference")
 
 
 def kernel(function: Callable[..., Any]) -> Any:
@@ -30,7 +41,7 @@ def kernel(function: Callable[..., Any]) -> Any:
     Kernels are serial and take a range of rows; `run_rows` gives each thread
     its ranges. Measured against ``parallel=True`` this halves the compile time
     and saves milliseconds a call, and the result has the same bits for any
-    number of threads.
+    number of threads. Other kernels cannot call it, see `inner_kernel`.
     """
     return _compile_later(function)
 
@@ -47,54 +58,83 @@ def inner_kernel(function: Callable[..., Any]) -> Any:
 def _compile_later(function: Callable[..., Any], **extra: bool) -> Any:
     options: dict[str, Any] = {"nogil": True, "fastmath": FAST_MATH, "error_model": "numpy"}
     options |= {"no_cfunc_wrapper": True, **extra}
+    dispatcher: Any = numba.njit(**options)(function)
     directory = cache_directory()
-    if directory is None:
-        return numba.njit(**options)(function)
-    # numba resolves its cache folder while it decorates and nowhere later, so
-    # other users of numba in this process keep the folder that they chose.
-    config: Any = numba.config
-    previous = config.CACHE_DIR
-    config.CACHE_DIR = str(directory)
-    try:
-        dispatcher: Any = numba.njit(cache=True, **options)(function)
-    except RuntimeError:
-        # numba found no room for the folder that it keeps for each of ours.
-        _warn_of_full_disk(directory)
-        return numba.njit(**options)(function)
-    finally:
-        config.CACHE_DIR = previous
-    stored = dispatcher._cache
-    stored.save_overload = functools.partial(_save_compiled, directory, stored.save_overload)
-    if hasattr(stored, "_load_overload"):
-        stored.load_overload = functools.partial(_load_compiled, stored, function.__name__)
+    if directory is not None:
+        dispatcher._cache = _KernelCache(function, directory)
     return dispatcher
 
 
-def _save_compiled(
-    directory: Path, save: Callable[[Any, Any], None], signature: Any, compiled: Any
-) -> None:
-    """Keep a compiled kernel on disk; where that fails it serves this process only."""
-    try:
-        save(signature, compiled)
-    except OSError:
-        _warn_of_full_disk(directory)
+class _KernelCache(_Cache):
+    """Compiled versions of one kernel on disk, a file for each signature and processor.
 
-
-def _load_compiled(stored: Any, name: str, signature: Any, target_context: Any) -> Any:
-    """Load a kernel from disk without the machinery that compiles kernels.
-
-    As it comes, numba imports some 180 modules (and scipy, where it is installed)
-    before it looks whether a compiled kernel is there: 0.4 s, twice what the rest
-    of a render's start takes. What a compiled kernel needs of them is the memory
-    manager. Where none is found, numba's compiler loads them itself.
+    In the place of numba's own cache, which tries the folder for each kernel, trusts
+    what it finds there, and imports the machinery that compiles (some 180 modules, and
+    scipy where it is installed) before it looks whether a kernel is compiled already.
     """
-    rtsys.initialize(target_context)
-    with stored._guard_against_spurious_io_errors():
-        compiled = stored._load_overload(signature, target_context)
-        if compiled is None and name in _beside.names:
+
+    def __init__(self, function: Callable[..., Any], directory: Path) -> None:
+        self._function = function
+        self._directory = directory
+
+    @property
+    def cache_path(self) -> str:
+        """Where the files lie."""
+        return str(self._directory)
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Return a compiled kernel, or None if there is none."""
+        # What a compiled kernel needs of numba's machinery is the memory manager.
+        rtsys.initialize(target_context)
+        path = self._path(sig, target_context.codegen())
+        content = read_sealed(path)
+        if content is None and self._function.__name__ in _beside.names:
             _beside.wait()
-            compiled = stored._load_overload(signature, target_context)
-        return compiled
+            content = read_sealed(path)
+        if content is None:
+            return None
+        return CompileResult._rebuild(target_context, *pickle.loads(content))
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep a compiled kernel; where that fails it serves this process only."""
+        try:
+            write_sealed(self._path(sig, data.codegen), dumps(_reduced(data)))
+        except OSError:
+            warn_of_full_disk(self._directory)
+
+    def enable(self) -> None:
+        """Do nothing: it is always on."""
+
+    def disable(self) -> None:
+        """Do nothing: it is always on."""
+
+    def flush(self) -> None:
+        """Do nothing: the folder's name changes with the sources."""
+
+    def _path(self, signature: Any, codegen: Any) -> Path:
+        function = self._function
+        version = f"{function.__module__} {signature!r} {codegen.magic_tuple()!r}".encode()
+        digest = hashlib.sha256(version + function.__code__.co_code).hexdigest()[:16]
+        name = re.sub(r"\W+", "_", function.__name__)
+        return self._directory / f"{name}-{digest}{KERNEL_SUFFIX}"
+
+
+def _reduced(compiled: Any) -> tuple[Any, ...]:
+    """Parts of a compiled kernel that a file keeps.
+
+    Of a kernel that Python calls these are its machine code and its name. The code that
+    other kernels would be linked to, and the environments of what was compiled into it
+    (numba's own array functions, whose modules would be imported), take longer to load.
+    """
+    (name, kind, code), descriptor, *others, _ = compiled._reduce()
+    if kind != "object" or not compiled.library.codegen._engine.is_symbol_defined(
+        descriptor.llvm_cpython_wrapper_name
+    ):
+        whole: tuple[Any, ...] = compiled._reduce()
+        return whole
+    names = f'define void @"{descriptor.llvm_cpython_wrapper_name}"() {{ ret void }}'
+    stub = llvmlite.binding.parse_assembly(names).as_bitcode()
+    return (name, kind, (code[0], stub)), descriptor, *others, ()
 
 
 class _Beside:
@@ -143,48 +183,6 @@ def compile_beside(module: str, names: frozenset[str]) -> Iterator[None]:
         _beside.stop()
 
 
-@functools.cache
-def cache_directory() -> Path | None:
-    """Folder of the compiled kernels, or None where none can be written.
-
-    It is named by a hash of the kernels' sources, because numba does not notice
-    an edit to a kernel that another file's kernel calls (numba issue 9483).
-    SKYBAKE_CACHE_DIR and NUMBA_CACHE_DIR take precedence over the user's cache
-    folder.
-    """
-    configured = os.environ.get("SKYBAKE_CACHE_DIR") or os.environ.get("NUMBA_CACHE_DIR")
-    parent = Path(configured) if configured else _user_cache()
-    if parent is None:
-        _warn_of_no_cache("SKYBAKE_CACHE_DIR: kernel cache must be given without a home folder")
-        return None
-    directory = parent / f"kernels-{_source_hash()}"
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        writable = False
-    else:
-        writable = os.access(directory, os.W_OK | os.X_OK)
-    if not writable:
-        _warn_of_no_cache(f"{directory}: kernel cache must be writable")
-        return None
-    return directory
-
-
-@functools.cache
-def _warn_of_full_disk(directory: Path) -> None:
-    _warn_of_no_cache(f"{directory}: kernel cache must have room")
-
-
-def _warn_of_no_cache(fault: str) -> None:
-    warnings.warn(f"{fault}; compiling anew in every process", RuntimeWarning, stacklevel=3)
-
-
-def is_warm() -> bool:
-    """Whether compiled kernels of this version lie on disk."""
-    directory = cache_directory()
-    return directory is not None and any(directory.rglob("*.nbc"))
-
-
 def thread_count() -> int:
     """CPUs that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
@@ -198,7 +196,7 @@ def run_rows(rows: int, work: Callable[[int, int], object], *, chunk: int = 1) -
     itself runs there alone: waiting for the others could wait forever.
     """
     starts = range(0, rows, chunk)
-    if thread_count() == 1 or len(starts) == 1 or getattr(_here, "is_worker", False):
+    if thread_count() == 1 or len(starts) == 1 or runs_alone():
         for first in starts:
             work(first, min(first + chunk, rows))
         return
@@ -212,36 +210,24 @@ def run_rows(rows: int, work: Callable[[int, int], object], *, chunk: int = 1) -
         raise
 
 
-@functools.cache
-def _pool() -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(thread_count(), initializer=_mark_worker)
+def lone_threads(count: int) -> ThreadPoolExecutor:
+    """Threads that share no work: `run_rows` stays in the one that calls it."""
+    return ThreadPoolExecutor(count, initializer=stay_in_thread)
 
 
-_here = threading.local()
-
-
-def _mark_worker() -> None:
+def stay_in_thread() -> None:
+    """Let `run_rows` use no other threads from now on when this one calls it."""
     _here.is_worker = True
 
 
+def runs_alone() -> bool:
+    """Whether the caller is one of several threads that are all busy."""
+    return getattr(_here, "is_worker", False)
+
+
 @functools.cache
-def _source_hash() -> str:
-    package = Path(__file__).parent.parent
-    digest = hashlib.sha256(numba.__version__.encode())
-    for name in _KERNEL_PACKAGES:
-        for source in sorted((package / name).glob("*.py")):
-            digest.update(source.read_bytes())
-    return digest.hexdigest()[:16]
+def _pool() -> ThreadPoolExecutor:
+    return lone_threads(thread_count())
 
 
-def _user_cache() -> Path | None:
-    """Folder for this program's files by the platform's convention; None without a home."""
-    configured = os.environ.get("LOCALAPPDATA" if sys.platform == "win32" else "XDG_CACHE_HOME")
-    if configured:
-        return Path(configured) / "skybake"
-    try:
-        home = Path.home()
-    except RuntimeError:
-        return None
-    within = {"win32": "AppData/Local", "darwin": "Library/Caches"}.get(sys.platform, ".cache")
-    return home / within / "skybake"
+_here = threading.local()

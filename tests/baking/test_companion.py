@@ -27,14 +27,13 @@ def test_first_render_compiles_each_kernel_for_one_set_of_types(tmp_path):
     result = render(tmp_path, PYTHONPATH=str(Path.cwd()))
     assert result.returncode == 0, result.stderr
     assert result.stderr.count("compiling kernels") == 1
-    compiled = Counter(path.name.split("-")[0] for path in tmp_path.rglob("*.nbc"))
+    compiled = Counter(path.name.split("-")[0] for path in tmp_path.rglob("*.kernel"))
     assert {name: count for name, count in compiled.items() if count > 1} == {}
-    names = {name.split(".")[-1] for name in compiled}
-    assert names >= {kernel.py_func.__name__ for kernel in KERNELS}
+    assert set(compiled) >= {kernel.py_func.__name__ for kernel in KERNELS}
     again = render(tmp_path, PYTHONPATH=str(Path.cwd()))
     assert again.returncode == 0
     assert "compiling" not in again.stderr
-    assert Counter(path.name.split("-")[0] for path in tmp_path.rglob("*.nbc")) == compiled
+    assert Counter(path.name.split("-")[0] for path in tmp_path.rglob("*.kernel")) == compiled
 
 
 def test_kernels_of_a_process_that_failed_are_compiled_by_who_needs_them(tmp_path):

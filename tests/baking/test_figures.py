@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 
 from skybake.baking.figures import derive_figures, figures_text
-from skybake.errors import PresetError
+from skybake.errors import InputError, PresetError
+from skybake.luts.atmosphere import build_atmosphere
+from skybake.optics.medium import build_medium
 from skybake.preset import load_preset, preset_names
+from skybake.sky.sky import WAVELENGTHS
 
 
 def constituents(figures):
@@ -56,6 +59,21 @@ def test_an_empty_constituent_has_no_albedo_and_is_told_without_nan():
     text = figures_text(planet, figures)
     assert "nan" not in text
     assert len(text.splitlines()) == 16
+
+
+@pytest.mark.parametrize(("depth", "refused"), [(29.0, False), (33.0, False), (45.0, True)])
+def test_air_is_called_too_thick_where_the_solver_refuses_it(depth, refused):
+    """Dust of depth 33 has 28 without its forward peak."""
+    planet = load_preset("mars", {"dust.optical_depth": depth})
+    figures = derive_figures(planet)
+    assert (figures.refusal is not None) == refused
+    lines = figures_text(planet, figures).splitlines()
+    told = [line for line in lines if line.startswith("will not render: ")]
+    assert told == ([f"will not render: {figures.refusal}"] if refused else [])
+    if refused:
+        with pytest.raises(InputError) as caught:
+            build_atmosphere(build_medium(planet, WAVELENGTHS), "full")
+        assert str(caught.value) == figures.refusal
 
 
 def test_wavelengths_stay_within_those_of_the_preset():

@@ -25,10 +25,23 @@ def start(*arguments, code="from skybake.cli import run; run()", wrapper=(), **k
         [*wrapper, sys.executable, "-c", code, *map(str, arguments)],
         env=os.environ | {"PYTHONPATH": PACKAGES} | keywords.pop("env", {}),
         stdout=keywords.pop("stdout", subprocess.PIPE),
-        stderr=subprocess.PIPE,
+        stderr=keywords.pop("stderr", subprocess.PIPE),
         text=True,
         **keywords,
     )
+
+
+def installed(folder, skybake=f'exec {sys.executable} -m skybake "$@"'):
+    """Environment in which a shell finds our programs, as an installation puts them there.
+
+    What `skybake` does may be given as lines of a shell.
+    """
+    folder.mkdir()
+    for name, lines in (("skybake", skybake), ("dask", f'exec {sys.executable} -m dask "$@"')):
+        program = folder / name
+        program.write_text(f"#!/bin/sh\n{lines}\n")
+        program.chmod(0o755)
+    return os.environ | {"PATH": f"{folder}:{os.environ['PATH']}", "PYTHONPATH": PACKAGES}
 
 
 def run(*arguments, **keywords):

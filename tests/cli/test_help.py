@@ -21,7 +21,7 @@ from skybake.sky.sky import METHODS
 from tests.cli.runs import invoke, run
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "cli.md"
-HEAVY = {"numpy", "numba", "OpenImageIO", "scipy", "colour", "llvmlite"}
+HEAVY = {"numpy", "numba", "OpenImageIO", "scipy", "colour", "llvmlite", "ephem"}
 
 AFTER = """
 import json, sys
@@ -51,6 +51,11 @@ COMMANDS = list(_commands(main))
         ("--version",),
         ("render", "--help"),
         ("preview", "--help"),
+        ("sequence", "--help"),
+        ("sequence", "--sun", "30deg"),
+        ("sequence", "--frames", "3-1"),
+        ("sequence", "--frames", "1-3", "--lat", "48"),
+        ("sequence", "--frames", "1-3", "-o", "sky.jpg"),
         ("presets", "list"),
         ("presets", "show", "mars"),
         ("render", "--size", "64x63"),

@@ -170,6 +170,18 @@ def test_a_key_of_a_new_world_is_changed_by_taking_its_hash_away(tmp_path, monke
     assert load_preset("own.toml").recipe["constituents"]["aerosol"]["optical_depth"] == 0.4
 
 
+def test_a_constituent_of_a_new_world_is_taken_away_as_its_remarks_say(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    invoke("presets", "new", "own")
+    head, *tables = Path("own.toml").read_text("utf-8").split("\n[")
+    assert 'write above the first table: constituents.NAME = "none"' in head
+    kept = [table for table in tables if not table.startswith("constituents.ozone]")]
+    assert len(kept) == len(tables) - 1
+    Path("own.toml").write_text("\n[".join([f'{head}constituents.ozone = "none"\n', *kept]))
+    names = [one.name for one in load_preset("own.toml").constituents]
+    assert names == ["air", "aerosol"]
+
+
 def test_a_new_world_may_extend_a_file_and_is_moved_without_losing_it(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     invoke("presets", "new", "base", "--from", "mars")
@@ -234,11 +246,7 @@ def test_a_picture_in_a_missing_folder_is_one_line_and_no_file(tmp_path):
 
 def kernels():
     cache = Path(os.environ["SKYBAKE_CACHE_DIR"])
-    return {
-        path: path.stat().st_mtime_ns
-        for path in cache.rglob("*")
-        if path.suffix in (".nbi", ".nbc")
-    }
+    return {path: path.stat().st_mtime_ns for path in cache.rglob("*.kernel")}
 
 
 def test_changing_the_air_compiles_no_kernel(tmp_path):

@@ -3,6 +3,7 @@
 import json
 import os
 import pty
+import random
 import signal
 import subprocess
 import sys
@@ -300,3 +301,102 @@ def test_16k_needs_at_most_500_megabytes(tmp_path, suffix):
     )
     assert status == 0, errors
     assert int(output) * 1024 < 500e6
+
+
+@pytest.mark.usefixtures("warm")
+@pytest.mark.parametrize("megabytes", [128, 400, 700])
+@pytest.mark.parametrize("command", ["render", "sequence", "preview", "probe"])
+def test_too_little_memory_is_one_line(tmp_path, command, megabytes):
+    arguments = {
+        "render": ("-o", "a.exr"),
+        "sequence": ("--frames", "1-2", "-o", "a.#.exr"),
+        "preview": ("a.exr",),
+        "probe": (),
+    }[command]
+    limit = ("prlimit", f"--as={megabytes << 20}")
+    status, output, errors = run(command, *arguments, cwd=tmp_path, wrapper=limit)
+    assert (status, output) == (1, "")
+    assert errors == (
+        "skybake: memory: must be at least 1024 MB of address space, "
+        f"got a limit of {megabytes} MB\n"
+    )
+    assert listing(tmp_path) == []
+
+
+KILLED = {
+    "render": ("render", *SMALL, "-q", "-o", "sky.exr"),
+    "cubemap": ("render", "--projection", "cubemap", "--size", "64", "-q", "-o", "sky.exr"),
+    "preview": ("render", *SMALL, "--preview", "-q", "-o", "sky.exr"),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("warm")
+@pytest.mark.parametrize("way", KILLED)
+def test_killed_at_any_moment_it_leaves_whole_files_or_none(tmp_path, way):
+    """Fifty kills in all; the next run of the same target takes away what they left."""
+    begun = time.perf_counter()
+    whole = tmp_path / "whole"
+    whole.mkdir()
+    assert run(*KILLED[way], cwd=whole) == (0, "", "")
+    usual = time.perf_counter() - begun
+    folder = tmp_path / "killed"
+    folder.mkdir()
+    moments = random.Random(way)
+    for _ in range(17):
+        process = start(*KILLED[way], cwd=folder)
+        time.sleep(usual * moments.uniform(0.3, 1.05))
+        process.kill()
+        process.communicate()
+        for name in listing(folder):
+            if not name.startswith(".skybake-"):
+                assert (folder / name).read_bytes() == (whole / name).read_bytes()
+                (folder / name).unlink()
+    assert run(*KILLED[way], cwd=folder) == (0, "", "")
+    assert listing(folder) == listing(whole)
+
+
+BARE = {"PATH": os.environ["PATH"], "PYTHONPATH": PACKAGES}
+
+
+def run_bare(*arguments, cwd, **environment):
+    """Run with hardly any environment."""
+    cache = {"SKYBAKE_CACHE_DIR": os.environ["SKYBAKE_CACHE_DIR"]}
+    result = subprocess.run(
+        [sys.executable, "-m", "skybake", *arguments],
+        cwd=cwd,
+        env={**BARE, **cache, **environment},
+        capture_output=True,
+        check=False,
+        timeout=240,
+    )
+    return result.returncode, result.stdout, result.stderr
+
+
+@pytest.mark.usefixtures("warm")
+@pytest.mark.parametrize(
+    "environment", [{}, {"LC_ALL": "C"}, {"LC_ALL": "POSIX", "TERM": "dumb"}, {"TZ": "Nowhere"}]
+)
+def test_without_home_terminal_and_locale_maps_are_as_they_are(tmp_path, environment):
+    name = "a folder/sky é 空.exr"
+    (tmp_path / "a folder").mkdir()
+    expected = render(tmp_path / "plain.exr", *SMALL)
+    assert run_bare("render", *SMALL, "-q", "-o", name, cwd=tmp_path, **environment) == (
+        0,
+        b"",
+        b"",
+    )
+    assert (tmp_path / name).read_bytes() == expected
+
+
+@pytest.mark.usefixtures("warm")
+@pytest.mark.parametrize("arguments", [("render", *SMALL, "-o"), ("preview",)])
+def test_a_name_that_is_no_utf8_is_one_line(tmp_path, arguments):
+    name = b"sky\xff.exr"
+    if arguments[0] == "preview":
+        (tmp_path / os.fsdecode(name)).write_bytes(b"")
+    status, output, errors = run_bare(*arguments, name, cwd=tmp_path)
+    assert (status, output) == (1, b"")
+    assert errors.splitlines()[-1].startswith(b"skybake: sky")
+    assert b"must be UTF-8" in errors
+    assert len(errors.splitlines()) <= 2

@@ -42,7 +42,7 @@ def test_json_says_what_was_baked(folder):
     assert told["clamped"] == 0
     assert (told["preview"], told["preview_ev"]) == (None, None)
     assert 0.0 < told["seconds"] < 300.0
-    assert len(told) == 14
+    assert len(told) == 15
 
 
 def test_the_file_carries_what_json_says():
@@ -71,6 +71,10 @@ def test_the_file_carries_what_json_says():
         (("--sun", "5400arcmin"), "earth_sun+90.00deg_equirect.exr"),
         (("--altitude", "30000ft"), "earth_sun+30.00deg_9144m_equirect.exr"),
         (("--preset", "mars", "--altitude", "2km"), "mars_sun+30.00deg_2000m_equirect.exr"),
+        (
+            ("--ground-albedo", "snow", "--sun-azimuth", "450", "--sun-disc", "exclude"),
+            "earth_ground.albedo=snow_sun+30.00deg_az090.00deg_nodisc_equirect.exr",
+        ),
     ],
 )
 def test_the_default_name_says_what_it_is_and_lies_in_the_current_folder(folder, arguments, name):

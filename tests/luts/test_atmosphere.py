@@ -3,11 +3,13 @@
 import io
 import resource
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 
-from skybake.luts import atmosphere as store
+from skybake.luts import atmosphere, store
+from skybake.luts.atmosphere import KEPT, build_atmosphere, forget_atmospheres, is_stored
 from tests.media import plain_medium
 
 MEDIUM = plain_medium(lambda h: np.exp(-h / 8.0), [0.01, 0.05])
@@ -17,6 +19,12 @@ MEDIUM = plain_medium(lambda h: np.exp(-h / 8.0), [0.01, 0.05])
 def folder(tmp_path, monkeypatch):
     monkeypatch.setattr(store, "cache_directory", lambda: tmp_path)
     return tmp_path / "atmospheres"
+
+
+def load(medium):
+    """As a process does that has not loaded any before."""
+    forget_atmospheres()
+    return atmosphere.load_atmosphere(medium, "hillaire")
 
 
 def leaves(value):
@@ -33,17 +41,62 @@ def assert_same(first, second):
 
 
 def test_stored_tables_are_the_built_ones_bit_by_bit(folder):
-    assert not store.is_stored(MEDIUM, "hillaire")
-    built = store.load_atmosphere(MEDIUM, "hillaire")
-    assert store.is_stored(MEDIUM, "hillaire")
-    assert_same(store.load_atmosphere(MEDIUM, "hillaire"), built)
+    assert not is_stored(MEDIUM, "hillaire")
+    built = load(MEDIUM)
+    assert is_stored(MEDIUM, "hillaire")
+    assert_same(load(MEDIUM), built)
     assert len(list(folder.iterdir())) == 1
 
 
 def test_stored_tables_are_not_built_again(folder, monkeypatch):
-    store.load_atmosphere(MEDIUM, "hillaire")
-    monkeypatch.setattr(store, "build_atmosphere", None)
-    store.load_atmosphere(MEDIUM, "hillaire")
+    load(MEDIUM)
+    monkeypatch.setattr(atmosphere, "build_atmosphere", None)
+    load(MEDIUM)
+
+
+def test_tables_in_memory_are_not_read_again(folder):
+    kept = load(MEDIUM)
+    (path,) = folder.iterdir()
+    path.write_bytes(b"")
+    assert atmosphere.load_atmosphere(MEDIUM, "hillaire") is kept
+
+
+def test_of_many_atmospheres_the_last_stay_in_memory(folder):
+    others = [MEDIUM._replace(ground_albedo=np.full(2, 0.1 * i)) for i in range(KEPT + 1)]
+    kept = [load(others[0])]
+    kept += [atmosphere.load_atmosphere(medium, "hillaire") for medium in others[1:]]
+    again = [atmosphere.load_atmosphere(medium, "hillaire") for medium in reversed(others)]
+    assert [a is b for a, b in zip(again, reversed(kept), strict=True)] == [True] * KEPT + [False]
+
+
+def test_threads_that_need_the_same_tables_build_them_once(folder, monkeypatch):
+    built = []
+
+    def build(*arguments):
+        built.append(arguments)
+        time.sleep(0.2)
+        return build_atmosphere(*arguments)
+
+    monkeypatch.setattr(atmosphere, "build_atmosphere", build)
+    forget_atmospheres()
+    with ThreadPoolExecutor(4) as threads:
+        found = list(
+            threads.map(lambda _: atmosphere.load_atmosphere(MEDIUM, "hillaire"), range(4))
+        )
+    assert len(built) == 1
+    assert all(one is found[0] for one in found)
+
+
+def test_a_build_that_fails_is_tried_again(folder, monkeypatch):
+    def fail(*_):
+        raise MemoryError
+
+    forget_atmospheres()
+    with monkeypatch.context() as broken:
+        broken.setattr(atmosphere, "build_atmosphere", fail)
+        with pytest.raises(MemoryError):
+            atmosphere.load_atmosphere(MEDIUM, "hillaire")
+    assert atmosphere.load_atmosphere(MEDIUM, "hillaire").shells.size > 1
 
 
 def half(whole):
@@ -88,28 +141,28 @@ DAMAGES = [
 
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_a_file_that_is_not_what_was_written_is_made_anew(folder, damage):
-    built = store.load_atmosphere(MEDIUM, "hillaire")
+    built = load(MEDIUM)
     (path,) = folder.iterdir()
     whole = path.read_bytes()
     path.write_bytes(damage(whole))
-    assert_same(store.load_atmosphere(MEDIUM, "hillaire"), built)
+    assert_same(load(MEDIUM), built)
     assert path.read_bytes() == whole
 
 
 def test_a_file_in_place_of_the_folder_only_costs_the_reuse(folder):
     folder.write_text("not a folder")
-    first, second = (store.load_atmosphere(MEDIUM, "hillaire") for _ in range(2))
+    first, second = (load(MEDIUM) for _ in range(2))
     assert_same(first, second)
-    assert not store.is_stored(MEDIUM, "hillaire")
+    assert not is_stored(MEDIUM, "hillaire")
     assert folder.read_text() == "not a folder"
 
 
 def test_a_folder_in_place_of_a_file_only_costs_the_reuse(folder):
-    built = store.load_atmosphere(MEDIUM, "hillaire")
+    built = load(MEDIUM)
     (path,) = folder.iterdir()
     path.unlink()
     path.mkdir()
-    assert_same(store.load_atmosphere(MEDIUM, "hillaire"), built)
+    assert_same(load(MEDIUM), built)
     assert list(folder.iterdir()) == [path]
 
 
@@ -123,9 +176,9 @@ def test_a_folder_in_place_of_a_file_only_costs_the_reuse(folder):
     ],
 )
 def test_another_medium_has_tables_of_its_own(folder, other):
-    store.load_atmosphere(MEDIUM, "hillaire")
-    assert not store.is_stored(other, "hillaire")
-    assert not store.is_stored(MEDIUM, "full")
+    load(MEDIUM)
+    assert not is_stored(other, "hillaire")
+    assert not is_stored(MEDIUM, "full")
 
 
 def test_a_full_disk_only_costs_the_reuse(folder):
@@ -133,21 +186,21 @@ def test_a_full_disk_only_costs_the_reuse(folder):
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (5000, limits[1]))
     try:
-        built = store.load_atmosphere(MEDIUM, "hillaire")
+        built = load(MEDIUM)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
     assert list(folder.iterdir()) == []
-    assert_same(store.load_atmosphere(MEDIUM, "hillaire"), built)
+    assert_same(load(MEDIUM), built)
 
 
 def test_the_tables_used_least_recently_go_first(folder, monkeypatch):
     others = [MEDIUM._replace(ground_albedo=np.full(2, 0.1 * i)) for i in range(3)]
-    store.load_atmosphere(others[0], "hillaire")
+    load(others[0])
     (path,) = folder.iterdir()
     monkeypatch.setattr(store, "LARGEST_STORE", int(2.5 * path.stat().st_size))
-    store.load_atmosphere(others[1], "hillaire")
+    load(others[1])
     time.sleep(0.05)  # file systems count in clock ticks
-    store.load_atmosphere(others[0], "hillaire")
+    load(others[0])
     time.sleep(0.05)
-    store.load_atmosphere(others[2], "hillaire")
-    assert [store.is_stored(medium, "hillaire") for medium in others] == [True, False, True]
+    load(others[2])
+    assert [is_stored(medium, "hillaire") for medium in others] == [True, False, True]

@@ -5,7 +5,7 @@ import tomllib
 from hypothesis import given
 from hypothesis import strategies as st
 
-from skybake.preset import preset_names, preset_text
+from skybake.preset import load_document, preset_names
 from skybake.preset.toml import toml_text, toml_value
 
 TEXTS = st.text(st.characters(exclude_categories=["Cs"]))
@@ -27,7 +27,7 @@ def test_any_document_survives(data):
 
 def test_every_preset_survives_in_its_order():
     for name in preset_names():
-        data = tomllib.loads(preset_text(name))
+        data = load_document(name).data
         again = tomllib.loads(toml_text(data))
         assert again == data
         assert list(again["constituents"]) == list(data["constituents"])

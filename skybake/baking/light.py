@@ -1,0 +1,97 @@
+"""The light of a map in figures, and the attributes by which its files tell them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from skybake.baking.scene import Scene
+from skybake.colour.space import find_colour_space, rgb_from_xyz
+from skybake.formats.spec import Attribute
+
+Triple = tuple[float, float, float]
+
+_ATTRIBUTES = {
+    "sun_direction": "skybake:sunDirection",
+    "sun_colour": "skybake:sunColour",
+    "direct_normal_illuminance": "skybake:directNormalIlluminance",
+    "direct_illuminance": "skybake:directIlluminance",
+    "sky_illuminance": "skybake:skyIlluminance",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Light:
+    """What light a map holds.
+
+    Attributes
+    ----------
+    sun_direction : tuple of float
+        Unit vector toward the sun; +Y up, -Z north, +X east.
+    sun_colour : tuple of float
+        Of the disc as the observer sees it: linear Rec. 709 of luminance 1, without
+        negative components; white if no sunlight arrives.
+    direct_normal_illuminance, direct_illuminance : float
+        By the sun's disc, on a plane that faces it and on a horizontal one. [lx]
+    sky_illuminance : float
+        By the sky, on a horizontal plane. [lx]
+    """
+
+    sun_direction: Triple
+    sun_colour: Triple
+    direct_normal_illuminance: float
+    direct_illuminance: float
+    sky_illuminance: float
+
+
+def light_of_scene(scene: Scene) -> Light:
+    """Return the light of a scene."""
+    normal, horizontal = scene.sun_xyz()
+    x, y, z = scene.sky.sun_direction.tolist()
+    return Light(
+        sun_direction=(x, y, z),
+        sun_colour=_colour(normal),
+        direct_normal_illuminance=float(normal[1]),
+        direct_illuminance=float(horizontal[1]),
+        sky_illuminance=scene.sky_illuminance(),
+    )
+
+
+def attributes_from_light(light: Light) -> dict[str, Attribute]:
+    """Return the attributes of a map's files."""
+    return {name: getattr(light, field) for field, name in _ATTRIBUTES.items()}
+
+
+def light_from_attributes(attributes: Mapping[str, Any]) -> Light:
+    """Return what the attributes of a map's file say.
+
+    All numbers are of single precision, as files hold them, in their shortest decimals:
+    attributes that have been in a file, of any format, give the same light as before.
+
+    Raises
+    ------
+    KeyError, ValueError
+        If one of them is missing, or is not what `attributes_from_light` made.
+    """
+    values = {field: _numbers(attributes[name]) for field, name in _ATTRIBUTES.items()}
+    direction, colour = values.pop("sun_direction"), values.pop("sun_colour")
+    (dx, dy, dz), (red, green, blue) = direction, colour
+    figures = {field: value for field, (value,) in values.items()}
+    return Light(sun_direction=(dx, dy, dz), sun_colour=(red, green, blue), **figures)
+
+
+def _numbers(value: Any) -> list[float]:
+    """Numbers of an attribute, which a Radiance picture holds as text."""
+    values = value.split() if isinstance(value, str) else np.atleast_1d(value)
+    return [float(str(np.float32(number))) for number in values]
+
+
+def _colour(xyz: np.ndarray) -> Triple:
+    rgb = np.maximum(rgb_from_xyz(find_colour_space("lin_rec709")) @ xyz, 0.0)
+    if not xyz[1] > 0.0:
+        return 1.0, 1.0, 1.0
+    red, green, blue = (rgb / xyz[1]).tolist()
+    return red, green, blue

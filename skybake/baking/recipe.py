@@ -1,0 +1,34 @@
+"""All that decides the pixels of a map, as its files tell it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from typing import Any
+
+import skybake
+from skybake.baking.settings import MapSettings
+from skybake.formats.spec import Attribute
+from skybake.preset import Planet
+
+HASH_ATTRIBUTE = "skybake:recipeHash"
+
+
+def map_recipe(planet: Planet, settings: MapSettings) -> dict[str, Any]:
+    """Return the recipe of a map, fit for JSON."""
+    return {"map": settings.recipe(), "preset": planet.recipe}
+
+
+def recipe_hash(planet: Planet, settings: MapSettings) -> str:
+    """Digest of a map's recipe and of the version that bakes it."""
+    recipe = json.dumps([skybake.__version__, map_recipe(planet, settings)], sort_keys=True)
+    return hashlib.sha256(recipe.encode()).hexdigest()[:32]
+
+
+def recipe_attributes(planet: Planet, settings: MapSettings) -> dict[str, Attribute]:
+    """Return the attributes of a map's files."""
+    return {
+        "skybake:preset": planet.name,
+        "skybake:recipe": json.dumps(map_recipe(planet, settings)),
+        HASH_ATTRIBUTE: recipe_hash(planet, settings),
+    }

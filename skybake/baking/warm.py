@@ -1,0 +1,73 @@
+"""Compiles every kernel ahead of its use, as for an image of a container."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from skybake import reference
+from skybake.baking.companion import beside
+from skybake.baking.settings import CUBE_LAYOUTS, MapSettings
+from skybake.baking.write import bake
+from skybake.luts.atmosphere import build_atmosphere
+from skybake.optics.medium import build_medium
+from skybake.preset import Planet, load_preset
+from skybake.sky.sky import METHODS, WAVELENGTHS, Sky
+
+SMALL = MapSettings(width=16)
+ORBIT = 400.0
+
+
+def compile_all() -> None:
+    """Bake each kind of map, in small, and trace a few paths."""
+    planet = load_preset("earth")
+    with beside(), tempfile.TemporaryDirectory() as folder:
+        for number, settings in enumerate(_kinds()):
+            bake(planet, Path(folder) / f"{number}.exr", settings)
+    medium = build_medium(planet, WAVELENGTHS)
+    # Tables that lie on disk already have left their kernels out.
+    for method in ("full", "hillaire"):
+        build_atmosphere(medium, method)
+    here = np.zeros(1)
+    reference.radiance(medium, 0.0, SMALL.sun_elevation, here, here, samples=2)
+    Sky(planet, SMALL.sun_elevation).radiance(np.array([0.0, 1.0, 0.0]))
+
+
+def solve(names: Iterable[str | Path], notice: Callable[[str], None]) -> None:
+    """Build the tables of presets that are not there.
+
+    Parameters
+    ----------
+    names : iterable of str or Path
+        As `skybake.load_preset` takes them.
+    notice : callable
+        Called with a line before each that takes long.
+
+    Raises
+    ------
+    SkybakeError
+        If a preset cannot be used.
+    """
+    planets: list[Planet] = [load_preset(name) for name in names]
+    for planet in planets:
+        sky = Sky(planet, SMALL.sun_elevation)
+        if not sky.is_solved:
+            notice(f"solving for the light in the atmosphere of {planet.name}")
+            _ = sky.atmosphere
+
+
+def _kinds() -> list[MapSettings]:
+    twilight = replace(SMALL, sun_elevation=math.radians(-4.0))
+    cube = replace(SMALL, projection="cubemap")
+    return [
+        *(replace(SMALL, method=method) for method in METHODS),
+        twilight,
+        replace(SMALL, altitude=ORBIT),
+        replace(cube, altitude=ORBIT),
+        *(replace(cube, cube_layout=layout) for layout in CUBE_LAYOUTS),
+    ]

@@ -1,0 +1,110 @@
+"""``skybake cache``: compiled kernels and tables that are kept between runs."""
+
+from __future__ import annotations
+
+import json
+import time
+from pathlib import Path
+from typing import Any
+
+import click
+
+from skybake.commands.memory import check_memory
+from skybake.commands.report import notice
+
+_MEGABYTE = 1e6
+
+
+@click.group()
+def cache() -> None:
+    """Show, empty or fill the folder of compiled kernels and solved atmospheres."""
+
+
+@cache.command()
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+def info(as_json: bool) -> None:
+    """Print where the cache lies and what each version has in it.
+
+    SKYBAKE_CACHE_DIR names another place than the user's cache folder. Folders that were not used
+    for 30 days go when a new version makes its own; of atmospheres the oldest go beyond 1 GB.
+    """
+    from skybake.transport.cache import cache_directory, cache_root, cache_usage
+
+    root, present = cache_root(), cache_directory()
+    usages = cache_usage()
+    if as_json:
+        versions = [_as_json(usage, is_present=usage.folder == present) for usage in usages]
+        click.echo(json.dumps({"folder": _text(root), "versions": versions}))
+        return
+    click.echo(root or "nowhere: there is no home folder")
+    for usage in usages:
+        mark = " (this version)" if usage.folder == present else ""
+        click.echo(
+            f"{usage.folder.name}{mark}: {usage.kernels} kernels "
+            f"{usage.kernel_bytes / _MEGABYTE:.1f} MB, {usage.tables} atmospheres "
+            f"{usage.table_bytes / _MEGABYTE:.1f} MB"
+        )
+
+
+@cache.command()
+def clear() -> None:
+    """Remove kernels and atmospheres of all versions.
+
+    Other files in the folder stay.
+    """
+    from skybake.transport.cache import cache_usage, clear_cache
+
+    freed = sum(usage.kernel_bytes + usage.table_bytes for usage in cache_usage())
+    clear_cache()
+    click.echo(f"{freed / _MEGABYTE:.1f} MB freed")
+
+
+@cache.command()
+@click.option(
+    "--preset",
+    "presets",
+    metavar="NAME|PATH",
+    multiple=True,
+    default=("earth",),
+    show_default=True,
+    help="World whose atmosphere is solved ahead; may be repeated.",
+)
+@click.option("-q", "--quiet", is_flag=True, help="Print nothing but faults.")
+def warm(presets: tuple[str, ...], quiet: bool) -> None:
+    """Compile every kernel, so that no later run has to, as in an image of a container.
+
+    \b
+    Examples:
+      skybake cache warm
+      SKYBAKE_CACHE_DIR=/opt/skybake skybake cache warm --preset earth --preset mars
+    """
+    check_memory()
+    started = time.perf_counter()
+    say = _silent if quiet else notice
+    say("compiling kernels")
+
+    from skybake.baking.warm import compile_all, solve
+
+    solve(presets, say)
+    compile_all()
+    if not quiet:
+        click.echo(f"warm; {time.perf_counter() - started:.1f} s")
+
+
+def _as_json(usage: Any, *, is_present: bool) -> dict[str, Any]:
+    return {
+        "folder": _text(usage.folder),
+        "present": is_present,
+        "kernels": usage.kernels,
+        "kernel_bytes": usage.kernel_bytes,
+        "atmospheres": usage.tables,
+        "atmosphere_bytes": usage.table_bytes,
+    }
+
+
+def _text(path: Path | None) -> str | None:
+    return None if path is None else str(path)
+
+
+def _silent(_: str) -> None:
+    pass

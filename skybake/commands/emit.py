@@ -1,0 +1,147 @@
+"""A sequence as commands for other machines, instead of being baked here."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Collection, Sequence
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from skybake.commands.world import read_value
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+_GIVEN = "skybake.commands.emit.given"
+
+# What only concerns the machine that gathers the frames, or this one call.
+_LEFT_OUT = {
+    *("only", "emit_commands", "emit_openjd", "chunk_size", "dry_run", "as_json", "dask"),
+    *("manifests", "contact_sheet", "animate", "fps", "style", "quiet"),
+}
+_OF_PREVIEWS = {"preview_ev", "view"}
+_PATHS = {"output", "preview", "exposure_curve"}
+
+HOW = frozenset({"skip_existing", "retry", "workers"})
+"""Options that say how frames are baked, and not which."""
+
+
+class RememberingCommand(click.Command):
+    """A command that knows its options as they were typed."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse, and keep the texts of the options."""
+        ctx.meta[_GIVEN] = self.make_parser(ctx).parse_args(list(args))[0]
+        return super().parse_args(ctx, args)
+
+
+def emit_options(command: Command) -> Command:
+    """Add the options that emit commands."""
+    for option in reversed(_OPTIONS):
+        command = option(command)
+    return command
+
+
+_OPTIONS = (
+    click.option(
+        "--emit-commands",
+        is_flag=True,
+        help="Print a command for each chunk of frames, for a farm or GNU parallel, and bake none.",
+    ),
+    click.option(
+        "--emit-openjd",
+        metavar="FOLDER",
+        type=click.Path(path_type=Path),
+        help="Write an Open Job Description with a task for each chunk, and bake none.",
+    ),
+    click.option(
+        "--chunk-size",
+        metavar="N",
+        type=click.IntRange(min=1),
+        default=10,
+        show_default=True,
+        help="Frames of a chunk.",
+    ),
+)
+
+
+def emit(context: click.Context, numbers: Sequence[int]) -> bool:
+    """Print or write commands if the options ask for it; whether they did.
+
+    Raises
+    ------
+    SkybakeError
+        If a format cannot hold them, or a file cannot be written.
+    """
+    options = context.params
+    if not options["emit_commands"] and options["emit_openjd"] is None:
+        return False
+
+    from skybake.sequence import farm, frames
+
+    if options["only"] is not None:
+        numbers = [number for number in numbers if number in set(options["only"])]
+    given = arguments(context)
+    lines = farm.commands(given, frames.chunks(numbers, options["chunk_size"]))
+    if options["emit_openjd"] is not None:
+        name = Path(options["output"] or options["preset"]).name
+        words = [*given, "--progress=openjd"]
+        size, folder = options["chunk_size"], options["emit_openjd"]
+        template = farm.write_openjd(folder, words, numbers, size, name)
+        if not options["emit_commands"]:
+            lines = [str(template)]
+    for line in lines:
+        click.echo(line)
+    return True
+
+
+def arguments(context: click.Context, leave_out: Collection[str] = ()) -> list[str]:
+    """Return a command that bakes the same frames from any folder, without ``--only``.
+
+    Parameters
+    ----------
+    context : click.Context
+        With the options of ``skybake sequence``.
+    leave_out : collection of str, optional
+        Names of options that the command shall not have either.
+    """
+    given: dict[str, Any] = context.meta[_GIVEN]
+    left_out = _LEFT_OUT | set(leave_out)
+    if "preview" not in given:
+        # They were for the contact sheet, which is left out too.
+        left_out |= _OF_PREVIEWS
+    words = ["skybake", "sequence"]
+    for parameter in context.command.params:
+        name = parameter.name or ""
+        if name in left_out or name not in given:
+            continue
+        option = max(parameter.opts, key=len)
+        values = given[name] if parameter.multiple else [given[name]]
+        words += [_word(option, name, value) for value in values]
+    if "output" not in given:
+        words.append(f"--output={Path.cwd() / Path(context.params['preset']).stem}.####.exr")
+    return words
+
+
+def _word(option: str, name: str, value: Any) -> str:
+    # Flags, and options whose value was left out, come as something else.
+    if not isinstance(value, str):
+        return option
+    is_file = name == "preset" and (value.endswith(".toml") or os.sep in value)
+    if is_file or name in _PATHS:
+        value = str(Path(value).absolute())
+    elif name in {"changes", "ground_albedo"}:
+        value = _with_absolute_file(value)
+    return f"{option}={value}"
+
+
+def _with_absolute_file(change: str) -> str:
+    """Make a file of the user's absolute in ``KEY=FILE`` or ``FILE``."""
+    from skybake.preset.tables import is_user_file
+
+    key, equals, value = change.rpartition("=")
+    file = read_value(value.strip())
+    if not isinstance(file, str) or not is_user_file(file):
+        return change
+    return f"{key}{equals}{Path(file).absolute()}"

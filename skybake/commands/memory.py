@@ -1,0 +1,37 @@
+"""The memory that a process may use."""
+
+from __future__ import annotations
+
+import sys
+
+from skybake.errors import InputError
+
+LEAST = 1 << 30
+"""Address space below which libraries abort the process instead of telling a fault. [byte]"""
+
+
+def memory_limit() -> int | None:
+    """Address space that this process may use, if it is limited. [byte]"""
+    if sys.platform == "win32":
+        return None
+    # Absent on Windows.
+    import resource
+
+    limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+    return None if limit == resource.RLIM_INFINITY else limit
+
+
+def check_memory() -> None:
+    """Refuse to start what would be aborted on its way.
+
+    Raises
+    ------
+    InputError
+        If the limit of this process is lower than any map needs.
+    """
+    limit = memory_limit()
+    if limit is not None and limit < LEAST:
+        raise InputError(
+            f"memory: must be at least {LEAST >> 20} MB of address space, "
+            f"got a limit of {limit >> 20} MB"
+        )

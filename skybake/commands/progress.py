@@ -1,0 +1,76 @@
+"""What ``skybake sequence`` tells while it works, for people, for logs and for farms."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from skybake.commands.report import notice
+
+if TYPE_CHECKING:
+    from skybake.sequence.run import Event
+
+STYLES = ("auto", "bar", "plain", "openjd", "none")
+
+
+class Progress:
+    """Tells of frames as they are done.
+
+    Parameters
+    ----------
+    style : {"bar", "plain", "openjd", "none"}
+        A bar, a line for each frame on standard error, or lines of the Open Job
+        Description on standard output.
+    bar : click progress bar, optional
+        For the style of this name.
+    """
+
+    def __init__(self, style: str, bar: Any = None) -> None:
+        self._style = style
+        self._bar = bar
+        self._started = time.perf_counter()
+        self._baked = 0
+
+    def __call__(self, event: Event) -> None:
+        """Tell of one frame."""
+        self._baked += event.kind == "baked"
+        if self._style == "bar":
+            self._bar.update(event.done - self._bar.pos, self._speed(event).partition(", ")[2])
+        elif self._style == "plain":
+            notice(self._line(event))
+        elif self._style == "openjd":
+            click.echo(f"openjd_progress: {100.0 * event.done / event.total:.1f}")
+            click.echo(f"openjd_status: {self._line(event)}")
+
+    def _line(self, event: Event) -> str:
+        news = f"{event.kind} {event.frame.output}"
+        if event.message:
+            return f"{event.done}/{event.total} {news}: {event.message}"
+        return f"{event.done}/{event.total} {news}{self._speed(event)}"
+
+    def _speed(self, event: Event) -> str:
+        """Frames in a second, and how long the others will take; of skipped ones nothing."""
+        if not self._baked:
+            return ""
+        rate = self._baked / (time.perf_counter() - self._started)
+        left = event.total - event.done
+        return f", {rate:.1f} frames/s" + (f", {left / rate:.0f} s left" if left else "")
+
+
+@contextmanager
+def progress(style: str, total: int, *, quiet: bool) -> Iterator[Progress]:
+    """Yield what tells of frames; ``auto`` is a bar on a terminal and lines elsewhere."""
+    if style == "auto":
+        style = "none" if quiet else "bar" if sys.stderr.isatty() else "plain"
+    if style != "bar":
+        yield Progress(style)
+        return
+    with click.progressbar(
+        length=total, label="baking", file=sys.stderr, item_show_func=lambda speed: speed
+    ) as bar:
+        yield Progress(style, bar)

@@ -1,0 +1,1 @@
+"""Where the sun stands: from a place and a time to elevation and azimuth."""

@@ -1,0 +1,223 @@
+"""Times as people type them, and steps through them."""
+
+from __future__ import annotations
+
+import re
+from datetime import UTC, date, datetime, timedelta, tzinfo
+from difflib import get_close_matches
+from typing import Literal
+from zoneinfo import ZoneInfo, available_timezones
+
+from skybake.ephemeris.events import EVENTS, event_time, mean_solar_zone
+from skybake.ephemeris.place import Place
+from skybake.errors import InputError
+from skybake.units import parse_duration
+
+FIRST_YEAR, LAST_YEAR = 1000, 2999
+MAX_STEPS = 100_000
+"""Most moments of a range; more is a slip of the pen."""
+
+_OFFSET = r"(?:Z|[+-]\d\d:\d\d(?::\d\d)?)"
+_ISO = re.compile(rf"\d{{4}}-\d\d-\d\dT\d\d:\d\d(?::\d\d(?:\.\d{{1,6}})?)?({_OFFSET})?", re.ASCII)
+_EVENT = re.compile(rf"({'|'.join(EVENTS)})(?:([+-])(.+))?")
+_SECONDS_OF_DAY = 86_400.0
+
+
+def kind_of(text: str) -> Literal["event", "local", "absolute", "unknown"]:
+    """Return what a text means: an event, a time of the local clock, or one with an offset."""
+    if _EVENT.fullmatch(text):
+        return "event"
+    iso = _ISO.fullmatch(text)
+    if iso is None:
+        return "unknown"
+    return "local" if iso[1] is None else "absolute"
+
+
+def find_zone(name: str) -> ZoneInfo:
+    """Return the clock of a region such as ``Europe/Paris``.
+
+    Raises
+    ------
+    InputError
+        If the time zone database has no such region; the message tells the nearest.
+    """
+    try:
+        return ZoneInfo(name)
+    # KeyError for a name that is not there, the others for what is no name at all.
+    except (KeyError, ValueError, OSError) as error:
+        known = available_timezones()
+        if not known:
+            raise InputError(
+                "must find a time zone database, got none (pip install tzdata)"
+            ) from error
+        like = ", ".join(get_close_matches(name, sorted(known), n=3)) or "Europe/Paris, UTC"
+        raise InputError(f"unknown time zone {name!r}; nearest: {like}") from error
+
+
+def parse_time(
+    text: str,
+    *,
+    place: Place | None = None,
+    zone: tzinfo | None = None,
+    day: date | None = None,
+) -> datetime:
+    """Read a time such as ``2026-06-21T04:00Z`` or ``sunset+10min``.
+
+    Parameters
+    ----------
+    text : str
+        ISO 8601 with an offset or, if there is a zone, without one; or one of
+        `EVENTS`, maybe with an offset.
+    place : Place, optional
+        Of events.
+    zone : tzinfo, optional
+        The local clock; for events without one, that of the place's mean sun.
+    day : date, optional
+        Of events, by the local clock.
+
+    Returns
+    -------
+    datetime
+        In UTC.
+
+    Raises
+    ------
+    InputError
+        If the text is no such time, if the local clock shows it never or twice, or if
+        the event does not happen.
+    """
+    event = _EVENT.fullmatch(text)
+    if event:
+        return _in_range(_parse_event(event, place, zone, day), text)
+    iso = _ISO.fullmatch(text)
+    if iso is None:
+        like = ", ".join(get_close_matches(text, EVENTS, n=3))
+        raise InputError(
+            f"must be as 2026-06-21T04:00Z or an event such as sunset+10min, got {text!r}"
+            + (f"; nearest: {like}" if like else "")
+        )
+    try:
+        moment = datetime.fromisoformat(text)
+    except ValueError as error:
+        raise InputError(f"must be a date and time that there is, got {text!r}") from error
+    _in_range(moment, text)
+    if moment.tzinfo is None:
+        if zone is None:
+            raise InputError(
+                f"needs an offset, as {text}Z or {text}+02:00, or a time zone (--tz), since "
+                f"clocks differ, got {text!r}"
+            )
+        return _from_local(moment, zone)
+    return moment.astimezone(UTC)
+
+
+def parse_end(
+    text: str,
+    start: datetime,
+    *,
+    place: Place | None = None,
+    zone: tzinfo | None = None,
+    day: date | None = None,
+) -> datetime:
+    """Read the end of a range; an event that is not after the start is that of the next day.
+
+    Parameters and errors are those of `parse_time`; an end that is not after the start is
+    an InputError too.
+    """
+    end = parse_time(text, place=place, zone=zone, day=day)
+    if end <= start and kind_of(text) == "event" and day is not None:
+        end = parse_time(text, place=place, zone=zone, day=day + timedelta(days=1))
+    if end <= start:
+        raise InputError(f"must be after the start, {utc_text(start)}, got {utc_text(end)}")
+    return end
+
+
+def parse_clock(text: str) -> float:
+    """Read a time of day, ``00:00`` to ``24:00``, maybe with seconds. [s]"""
+    match = re.fullmatch(r"(\d\d):([0-5]\d)(?::([0-5]\d))?", text, re.ASCII)
+    seconds = 3600.0 * int(match[1]) + 60.0 * int(match[2]) + int(match[3] or 0) if match else -1.0
+    if not 0.0 <= seconds <= _SECONDS_OF_DAY:
+        raise InputError(f"must be a time of day such as 04:00 or 16:30:15, got {text!r}")
+    return seconds
+
+
+def steps(span: float, every: float) -> list[float]:
+    """Return multiples of a step from 0 up to a span, with its end if it falls on a step.
+
+    Parameters
+    ----------
+    span, every : float
+        Both in one unit.
+
+    Raises
+    ------
+    InputError
+        If the step is not positive, or there are more than `MAX_STEPS`.
+    """
+    if not every > 0.0:
+        raise InputError(f"must be longer than 0s, got {every:g}s")
+    if span / every > MAX_STEPS:
+        raise InputError(f"must give at most {MAX_STEPS} frames, got {span / every:.7g}")
+    # Ten seconds a thousand times are not quite as long as their sum in binary numbers.
+    return [i * every for i in range(int(span / every + 1e-9) + 1)]
+
+
+def utc_text(moment: datetime) -> str:
+    """Write a time as ISO 8601 in UTC, as ``2026-06-21T04:00:00Z``."""
+    return local_text(moment.astimezone(UTC)).replace("+00:00", "Z")
+
+
+def local_text(moment: datetime) -> str:
+    """Write a time as ISO 8601 by its own clock, with milliseconds if it has any."""
+    return moment.isoformat(timespec="milliseconds" if moment.microsecond else "seconds")
+
+
+def _parse_event(
+    event: re.Match[str], place: Place | None, zone: tzinfo | None, day: date | None
+) -> datetime:
+    name, sign, length = event.groups()
+    if place is None or day is None:
+        raise InputError(f"{name} needs a place and a date, got none")
+    offset = parse_duration(length) if sign else 0.0
+    if offset > _SECONDS_OF_DAY:
+        raise InputError(f"{name}: offset must be at most 24h, got {length}")
+    moment = event_time(name, day, place, zone or mean_solar_zone(place))
+    return moment + timedelta(seconds=-offset if sign == "-" else offset)
+
+
+def _in_range(moment: datetime, text: str) -> datetime:
+    if not FIRST_YEAR <= moment.year <= LAST_YEAR:
+        raise InputError(f"must be in the years {FIRST_YEAR} to {LAST_YEAR}, got {text!r}")
+    return moment
+
+
+def _from_local(moment: datetime, zone: tzinfo) -> datetime:
+    """Return the one time at which a local clock shows a naive time."""
+    # Of a time that is shown twice these are both; of one that is never shown they are
+    # what the clocks before and after the change would make of it.
+    first, second = (moment.replace(tzinfo=zone, fold=fold) for fold in (0, 1))
+    if first.utcoffset() == second.utcoffset():
+        return first.astimezone(UTC)
+    if first.astimezone(UTC).astimezone(zone).replace(tzinfo=None) == moment:
+        raise InputError(
+            f"is shown twice in {zone}, write {local_text(first)} or {local_text(second)}, "
+            f"got {moment.isoformat()!r}"
+        )
+    before, after = first.utcoffset() or timedelta(), second.utcoffset() or timedelta()
+    change = _change(second.astimezone(UTC), first.astimezone(UTC), zone)
+    raise InputError(
+        f"is never shown in {zone}, where clocks go from {(change + before):%H:%M} to "
+        f"{(change + after):%H:%M}, got {moment.isoformat()!r}"
+    )
+
+
+def _change(low: datetime, high: datetime, zone: tzinfo) -> datetime:
+    """When between two times in UTC the clocks change."""
+    before = low.astimezone(zone).utcoffset()
+    while high - low > timedelta(seconds=1):
+        middle = low + (high - low) / 2
+        if middle.astimezone(zone).utcoffset() == before:
+            low = middle
+        else:
+            high = middle
+    return (high + timedelta(seconds=0.5)).replace(microsecond=0)

@@ -1,0 +1,98 @@
+"""Tables on disk, as plain arrays under a name that says what they depend on.
+
+A file holds arrays in numpy's own format: their names, and each of them.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from contextlib import suppress
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from skybake.transport.cache import (
+    TABLES_FOLDER,
+    TABLES_SUFFIX,
+    cache_directory,
+    read_sealed,
+    seal,
+    unseal,
+    write_sealed,
+)
+
+LARGEST_STORE = 1 << 30
+"""Size beyond which the tables unused for longest are removed. [byte]"""
+
+
+def read_tables(key: str) -> dict[str, Any] | None:
+    """Return the arrays of a file, or None if it is missing or not as it was written."""
+    path = stored_tables(key)
+    content = None if path is None else read_sealed(path)
+    if path is None or content is None:
+        return None
+    # The time of last use decides what goes first when the folder is full.
+    with suppress(OSError):
+        os.utime(path)
+    return _arrays(content)
+
+
+def write_tables(key: str, arrays: Mapping[str, Any]) -> None:
+    """Keep arrays on disk; a full disk only costs the reuse."""
+    path = _path(key)
+    if path is None:
+        return
+    with suppress(OSError):
+        write_sealed(path, _content(arrays))
+        _remove_oldest(path.parent)
+
+
+def stored_tables(key: str) -> Path | None:
+    """File of a name's arrays, or None if there is none."""
+    path = _path(key)
+    return path if path is not None and path.exists() else None
+
+
+def content_from_arrays(arrays: Mapping[str, Any]) -> bytes:
+    """Return what a file of these arrays holds."""
+    return seal(_content(arrays))
+
+
+def arrays_from_content(sealed: bytes) -> dict[str, Any] | None:
+    """Return the arrays of a file, or None if it is not as it was written."""
+    content = unseal(sealed)
+    return None if content is None else _arrays(content)
+
+
+def _content(arrays: Mapping[str, Any]) -> bytes:
+    stream = BytesIO()
+    for array in (np.array(list(arrays)), *arrays.values()):
+        np.save(stream, array, allow_pickle=False)
+    return stream.getvalue()
+
+
+def _arrays(content: memoryview) -> dict[str, Any]:
+    stream = BytesIO(content)
+    names = np.load(stream, allow_pickle=False)
+    return {str(name): np.load(stream, allow_pickle=False) for name in names}
+
+
+def _path(key: str) -> Path | None:
+    # The folder is named by the code that makes the tables.
+    directory = cache_directory()
+    return None if directory is None else directory / TABLES_FOLDER / f"{key}{TABLES_SUFFIX}"
+
+
+def _remove_oldest(folder: Path) -> None:
+    """Keep the folder below `LARGEST_STORE`."""
+    files = sorted(
+        folder.glob(f"*{TABLES_SUFFIX}"), key=lambda file: file.stat().st_mtime, reverse=True
+    )
+    total = 0
+    for file in files:
+        total += file.stat().st_size
+        if total > LARGEST_STORE:
+            file.unlink(missing_ok=True)

@@ -1,0 +1,165 @@
+"""Frames on the workers of a Dask cluster. Needs the extra ``skybake[dask]``."""
+
+from __future__ import annotations
+
+import logging
+import platform
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from importlib.metadata import version
+from typing import Any
+
+import skybake
+from skybake.errors import InputError
+from skybake.luts.atmosphere import adopt_atmosphere, atmosphere_content
+from skybake.optics.medium import Medium
+from skybake.preset import Planet
+from skybake.sequence.frame import Look, Outcome, finish_frame
+from skybake.sequence.plan import Frame, Plan
+from skybake.sequence.pool import Done, Run
+from skybake.sky.sky import Sky
+from skybake.transport.kernel import stay_in_thread
+
+CONNECT_WITHIN = 6
+"""Time after which a scheduler counts as absent. [s]"""
+
+WORKER_WITHIN = 30
+"""The same of its first worker, which a cluster may only now be starting. [s]"""
+
+_PACKAGES = ("numpy", "numba", "OpenImageIO")
+
+Tables = tuple[Medium, str, bytes] | None
+
+
+@contextmanager
+def dask_pool(plan: Plan, look: Look, address: str) -> Iterator[Run]:
+    """Bake frames on a cluster.
+
+    Parameters
+    ----------
+    plan : Plan
+        The sequence. Its files must lie in folders that the workers share.
+    look : Look
+        How its frames are shown.
+    address : str
+        Of the scheduler, as ``tcp://host:8786``.
+
+    Raises
+    ------
+    InputError
+        If the extra is not installed, no scheduler or worker answers, or workers run
+        other versions, which could make other bytes.
+
+    Notes
+    -----
+    The world and the tables of its air, 8 MB, are sent to each worker once; a frame is
+    half a kilobyte each way beside its thumbnail. A frame whose worker dies goes to
+    another one.
+    """
+    try:
+        from dask.distributed import Client, as_completed
+    except ImportError as error:
+        raise InputError("dask: needs distributed, as from pip install 'skybake[dask]'") from error
+    # Its words would stand between ours; what is lost becomes a frame's failure.
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    try:
+        client = Client(address, timeout=CONNECT_WITHIN, set_as_default=False)
+    except (OSError, ValueError, TypeError) as error:
+        raise InputError(
+            f"dask: a scheduler must answer at {address} within {CONNECT_WITHIN} s, "
+            f"got {_one_line(error)}"
+        ) from error
+    futures: dict[Any, Frame] = {}
+    try:
+        _check_workers(client, address)
+        # Of many worlds each worker needs a few, and those come with their frames.
+        planets = list(plan.planets)
+        if len(planets) == 1:
+            planets = client.scatter(planets, broadcast=True)
+        tables = client.scatter(_tables(plan), broadcast=True)
+
+        def run(frames: Sequence[Frame]) -> Iterator[Done]:
+            futures.clear()
+            for frame in frames:
+                future = client.submit(
+                    finish_on_worker,
+                    replace(frame, output=frame.output.absolute(), preview=_absolute(frame)),
+                    planets[frame.world],
+                    tables,
+                    look,
+                    pure=False,
+                )
+                futures[future] = frame
+            for future in as_completed(list(futures), loop=client.loop):
+                yield futures[future], _outcome(future)
+                future.release()
+
+        yield run
+    finally:
+        client.cancel(list(futures))
+        client.close()
+
+
+def finish_on_worker(frame: Frame, planet: Planet, tables: Tables, look: Look) -> Outcome:
+    """Bake a frame on a worker, with tables that came from afar."""
+    stay_in_thread()
+    if tables is not None:
+        adopt_atmosphere(*tables)
+    return finish_frame(frame, planet, look)
+
+
+def versions() -> dict[str, str]:
+    """Return what a worker's pixels depend on beside the frame."""
+    major, minor, _ = platform.python_version_tuple()
+    ours = {"skybake": skybake.__version__, "python": f"{major}.{minor}"}
+    return ours | {name: version(name) for name in _PACKAGES}
+
+
+def _check_workers(client: Any, address: str) -> None:
+    try:
+        client.wait_for_workers(1, timeout=WORKER_WITHIN)
+    except TimeoutError as error:
+        raise InputError(
+            f"dask: {address} must have a worker within {WORKER_WITHIN} s, got none"
+        ) from error
+    ours = versions()
+    for worker, theirs in client.run(versions, on_error="return").items():
+        if isinstance(theirs, Exception):
+            raise InputError(
+                f"dask: worker {worker} must have skybake {ours['skybake']}, "
+                f"got {_one_line(theirs)}"
+            )
+        for name, mine in ours.items():
+            if theirs[name] != mine:
+                raise InputError(
+                    f"dask: worker {worker} must have {name} {mine} as here, got {theirs[name]}"
+                )
+
+
+def _tables(plan: Plan) -> Tables:
+    """Tables that all frames share; where each has its own air, its worker builds them."""
+    if len(plan.planets) > 1:
+        return None
+    settings = plan.frames[0].settings
+    sky = Sky(plan.planets[0], settings.sun_elevation, method=settings.method)
+    return sky.medium, sky.table_method, atmosphere_content(sky.medium, sky.table_method)
+
+
+def _absolute(frame: Frame) -> Any:
+    return None if frame.preview is None else frame.preview.absolute()
+
+
+def _outcome(future: Any) -> Outcome | Exception:
+    """Return the result of a future, or why there is none."""
+    if future.status == "finished":
+        outcome: Outcome = future.result()
+        return outcome
+    if future.status == "error":
+        error: Exception = future.exception()
+        return error
+    return InputError(f"dask: a frame must come back, got {future.status}")
+
+
+def _one_line(error: BaseException) -> str:
+    return " ".join(str(error).split()) or type(error).__name__

@@ -1,0 +1,186 @@
+"""One frame of a sequence, baked or found."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from skybake.baking.light import Light, attributes_from_light, light_from_attributes
+from skybake.baking.paths import map_paths
+from skybake.baking.recipe import HASH_ATTRIBUTE, recipe_hash
+from skybake.baking.scene import Scene
+from skybake.baking.show import scene_ev, thumbnail
+from skybake.baking.write import bake_scene
+from skybake.colour.exposure import ev_from_luminance
+from skybake.errors import InputError
+from skybake.formats.partial import remove_leftovers
+from skybake.formats.reader import read_whole_attributes
+from skybake.preset import Planet
+from skybake.sequence.plan import Frame
+
+
+class CancelledError(Exception):
+    """The sequence was interrupted while a frame was being baked."""
+
+
+@dataclass(frozen=True)
+class Look:
+    """How frames are shown, and which are baked.
+
+    Attributes
+    ----------
+    view : {"aces2", "aces1"}
+        Display transform.
+    ev : float or None
+        Exposure value of pictures; None chooses one for each frame by itself.
+    follows_map : bool
+        Without `ev`, show maps as their own exposure has them.
+    thumbnail_width : int
+        Of the thumbnails; 0 for none. [pixel]
+    skip_existing : bool
+        Leave frames alone whose files are whole and of the same recipe.
+    """
+
+    view: str = "aces2"
+    ev: float | None = None
+    follows_map: bool = False
+    thumbnail_width: int = 0
+    skip_existing: bool = False
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A frame that is done.
+
+    Attributes
+    ----------
+    number : int
+        Its frame number.
+    is_new : bool
+        Whether it was baked; False if its files were there.
+    light : Light
+        What light it holds.
+    files : tuple of Path
+        The map, one file or six.
+    sha256 : tuple of str
+        Digests of these files.
+    ev : float or None
+        Exposure value of its picture, if that is known.
+    thumbnail : ndarray of uint8 or None
+        Code values of sRGB, shape (row, column, 3).
+    """
+
+    number: int
+    is_new: bool
+    light: Light
+    files: tuple[Path, ...]
+    sha256: tuple[str, ...]
+    ev: float | None
+    thumbnail: npt.NDArray[np.uint8] | None
+
+
+def finish_frame(
+    frame: Frame, planet: Planet, look: Look, is_cancelled: Callable[[], bool] = lambda: False
+) -> Outcome:
+    """Bake a frame, unless it is there.
+
+    Parameters
+    ----------
+    frame, planet : Frame, Planet
+        What to bake.
+    look : Look
+        What to show, and whether existing files count.
+    is_cancelled : callable, optional
+        Asked between the bands of a map.
+
+    Raises
+    ------
+    SkybakeError
+        As `skybake.baking.bake`.
+    CancelledError
+        If `is_cancelled` said so; no file is left then.
+    """
+    work = _Work(frame, planet, look)
+    light = find_light(frame, planet) if look.skip_existing else None
+    is_new = light is None
+
+    def stop_if_cancelled(_: float = 0.0) -> None:
+        if is_cancelled():
+            raise CancelledError
+
+    stop_if_cancelled()
+    files = map_paths(frame.output, frame.settings)
+    if light is None:
+        baked = bake_scene(
+            work.scene,
+            frame.output,
+            preview=frame.preview,
+            preview_ev=None if frame.preview is None else work.ev,
+            preview_view=look.view,
+            attributes=frame.attributes,
+            progress=stop_if_cancelled,
+        )
+        # As it will be when its files are found instead.
+        light = light_from_attributes(attributes_from_light(baked))
+    else:
+        for path in frame.files():
+            remove_leftovers(path)
+    return Outcome(
+        number=frame.number,
+        is_new=is_new,
+        light=light,
+        files=files,
+        sha256=tuple(_sha256(path) for path in files),
+        ev=work.ev if frame.preview is not None else None,
+        thumbnail=work.thumbnail() if look.thumbnail_width else None,
+    )
+
+
+def find_light(frame: Frame, planet: Planet) -> Light | None:
+    """Return the light of a frame whose files are whole and of its recipe, else None."""
+    if frame.preview is not None and not frame.preview.is_file():
+        return None
+    wanted = recipe_hash(planet, frame.settings)
+    light = None
+    for path in map_paths(frame.output, frame.settings):
+        try:
+            attributes = read_whole_attributes(path)
+            light = light_from_attributes(attributes)
+        except (InputError, OSError, KeyError, ValueError):
+            return None
+        if attributes.get(HASH_ATTRIBUTE) != wanted:
+            return None
+    return light
+
+
+class _Work:
+    """A frame's scene, made when it is needed."""
+
+    def __init__(self, frame: Frame, planet: Planet, look: Look) -> None:
+        self._frame, self._planet, self._look = frame, planet, look
+
+    @cached_property
+    def scene(self) -> Scene:
+        return Scene(self._planet, self._frame.settings)
+
+    @cached_property
+    def ev(self) -> float:
+        if self._look.ev is not None:
+            return self._look.ev
+        if self._look.follows_map:
+            return ev_from_luminance(self._frame.settings.white_luminance)
+        return scene_ev(self.scene)
+
+    def thumbnail(self) -> npt.NDArray[np.uint8]:
+        return thumbnail(self.scene, self.ev, self._look.view, self._look.thumbnail_width)
+
+
+def _sha256(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

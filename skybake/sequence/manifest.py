@@ -1,0 +1,183 @@
+"""What a sequence holds, frame by frame, as JSON and as CSV."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any
+
+from skybake import __version__
+from skybake.formats.partial import replace_when_whole
+from skybake.sequence.frames import format_frames
+
+SCHEMA = 1
+"""Goes up when a key of the JSON changes its meaning or goes."""
+
+_AXES = {"sun_direction": "xyz", "sun_colour": "rgb"}
+
+
+@dataclass(frozen=True)
+class FrameRecord:
+    """One frame: when it is, its light, and its files.
+
+    Attributes
+    ----------
+    frame : int
+        Its number.
+    time : str or None
+        ISO 8601 in UTC; None if the frame has a sun but no time.
+    label : str or None
+        The same for people, in local time.
+    sun_elevation_deg, sun_azimuth_deg : float
+        Geometric elevation of the sun's centre, and its compass bearing. [deg]
+    altitude_m : float
+        Of the observer above the ground. [m]
+    sun_direction : tuple of 3 float
+        Unit vector toward the sun; +Y up, -Z north, +X east.
+    sun_colour : tuple of 3 float
+        Of the sun's light at the observer, linear Rec. 709 of luminance 1; any if it
+        gives none.
+    sun_illuminance_lux, direct_illuminance_lux : float
+        By the sun's disc, on a plane that faces it and on a horizontal one. [lx]
+    sky_illuminance_lux : float
+        By the sky, on a horizontal plane. [lx]
+    white_luminance_cd_m2 : float
+        Luminance that a pixel value of 1 stands for. [cd m⁻²]
+    exposure_ev : float or None
+        Exposure value of the preview.
+    files : tuple of str
+        The map, one file or six, as seen from the manifest's folder, with ``/``.
+    sha256 : tuple of str
+        Of the same files, as hexadecimal digits.
+    preview : str or None
+        The display-referred picture, as seen from the manifest's folder.
+    """
+
+    frame: int
+    time: str | None
+    label: str | None
+    sun_elevation_deg: float
+    sun_azimuth_deg: float
+    altitude_m: float
+    sun_direction: tuple[float, float, float]
+    sun_colour: tuple[float, float, float]
+    sun_illuminance_lux: float
+    direct_illuminance_lux: float
+    sky_illuminance_lux: float
+    white_luminance_cd_m2: float
+    exposure_ev: float | None
+    files: tuple[str, ...]
+    sha256: tuple[str, ...]
+    preview: str | None
+
+
+@dataclass(frozen=True)
+class SequenceHeader:
+    """What all frames have in common.
+
+    Attributes
+    ----------
+    preset : str
+        Name of the world.
+    projection : {"equirect", "cubemap"}
+        Kind of map.
+    colorspace : str
+        A name of `skybake.colour.space.COLOUR_SPACES`.
+    sun_disc : {"include", "exclude", "only"}
+        Whether the maps hold the sun's disc, or nothing else.
+    sun_angular_diameter_deg : float
+        Of the star's disc. [deg]
+    recipe : mapping
+        What to bake again, fit for JSON.
+    fps : float
+        Frames per second, for players and renderers.
+    skybake : str
+        Version that baked them.
+    """
+
+    preset: str
+    projection: str
+    colorspace: str
+    sun_disc: str
+    sun_angular_diameter_deg: float
+    recipe: Mapping[str, Any]
+    fps: float = 24.0
+    skybake: str = __version__
+
+
+def ascending(records: Iterable[FrameRecord]) -> list[FrameRecord]:
+    """Return records in the order of their frames."""
+    return sorted(records, key=lambda record: record.frame)
+
+
+def write_manifest(path: Path, header: SequenceHeader, records: Iterable[FrameRecord]) -> None:
+    """Write a sequence as JSON.
+
+    Parameters
+    ----------
+    path : Path
+        By custom ``*.sequence.json``.
+    header : SequenceHeader
+        Its keys stand on top, after ``schema`` and ``frames``.
+    records : iterable of FrameRecord
+        In any order; in the file they ascend, under ``records``.
+
+    Raises
+    ------
+    OutputError
+        If the file cannot be written.
+    """
+    rows = ascending(records)
+    document = {
+        "schema": SCHEMA,
+        "frames": format_frames(row.frame for row in rows),
+        **asdict(header),
+        "records": [asdict(row) for row in rows],
+    }
+    with replace_when_whole(path) as temporary:
+        temporary.write_text(json.dumps(document, indent=2, allow_nan=False) + "\n", "utf-8")
+
+
+def write_csv(path: Path, records: Iterable[FrameRecord]) -> None:
+    """Write the records as CSV: a row for each frame, an empty cell for None.
+
+    Vectors take three columns, ``sun_direction_x`` and so on; the six files of a cube
+    stand in one cell with ``;`` between.
+
+    Raises
+    ------
+    OutputError
+        If the file cannot be written.
+    """
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(_columns())
+    for record in ascending(records):
+        writer.writerow(_cells(record))
+    with replace_when_whole(path) as temporary:
+        temporary.write_bytes(text.getvalue().encode("utf-8", "surrogateescape"))
+
+
+def _columns() -> Iterator[str]:
+    for field in fields(FrameRecord):
+        if field.name in _AXES:
+            yield from (f"{field.name}_{axis}" for axis in _AXES[field.name])
+        else:
+            yield field.name
+
+
+def _cells(record: FrameRecord) -> Iterator[str]:
+    for field in fields(FrameRecord):
+        value = getattr(record, field.name)
+        if field.name in _AXES:
+            yield from (f"{component:.9g}" for component in value)
+        elif isinstance(value, tuple):
+            yield ";".join(value)
+        elif isinstance(value, float):
+            yield f"{value:.9g}"
+        else:
+            yield "" if value is None else str(value)

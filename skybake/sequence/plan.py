@@ -1,0 +1,120 @@
+"""What a sequence consists of, before anything is computed."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from skybake.baking import MapSettings
+from skybake.baking.paths import map_paths
+from skybake.baking.write import check_targets
+from skybake.errors import OutputError
+from skybake.formats.spec import Attribute
+from skybake.preset import Planet
+
+
+@dataclass(frozen=True)
+class Frame:
+    """One map of a sequence.
+
+    Attributes
+    ----------
+    number : int
+        Its frame number.
+    world : int
+        Which of the plan's planets it shows.
+    settings : MapSettings
+        Sun, observer and map.
+    output : Path
+        As `skybake.baking.bake` takes it.
+    preview : Path or None
+        The display-referred picture.
+    label : str or None
+        Its time for people.
+    attributes : mapping of str to Attribute
+        Of time and place, for its files.
+    """
+
+    number: int
+    world: int
+    settings: MapSettings
+    output: Path
+    preview: Path | None = None
+    label: str | None = None
+    attributes: Mapping[str, Attribute] = field(default_factory=dict)
+
+    def files(self) -> tuple[Path, ...]:
+        """Return the map, one file or six, and the preview if there is one."""
+        preview = () if self.preview is None else (self.preview,)
+        return (*map_paths(self.output, self.settings), *preview)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """All maps of a sequence.
+
+    Attributes
+    ----------
+    planets : tuple of Planet
+        The worlds; one, unless something of the world changes over time.
+    frames : tuple of Frame
+        By ascending number.
+    """
+
+    planets: tuple[Planet, ...]
+    frames: tuple[Frame, ...]
+
+    def planet(self, frame: Frame) -> Planet:
+        """World of a frame."""
+        return self.planets[frame.world]
+
+    def only(self, numbers: Sequence[int]) -> Plan:
+        """Return the plan with some of its frames."""
+        wanted = set(numbers)
+        return Plan(self.planets, tuple(one for one in self.frames if one.number in wanted))
+
+    def check(self, view: str, others: Iterable[Path] = ()) -> None:
+        """Raise what can be said of all targets before anything is computed.
+
+        Parameters
+        ----------
+        view : {"aces2", "aces1"}
+            Display transform of previews.
+        others : iterable of Path, optional
+            What else is written.
+
+        Raises
+        ------
+        SkybakeError
+            If a file cannot be written under its name, or would be written twice.
+        """
+        for frame in self.frames:
+            check_targets(frame.output, frame.settings, frame.preview, view)
+        taken: set[str] = set()
+        for path in (*(path for frame in self.frames for path in frame.files()), *others):
+            target = os.path.realpath(path)
+            if target in taken:
+                raise OutputError(f"{path}: must be written once, got the file of two")
+            taken.add(target)
+
+    def highest_sun(self) -> Frame:
+        """Frame with the highest sun; of several the first."""
+        return max(self.frames, key=lambda frame: frame.settings.sun_elevation)
+
+    def summary(self) -> list[dict[str, Any]]:
+        """Return the frames in units for people, fit for JSON."""
+        return [
+            {
+                "frame": frame.number,
+                "label": frame.label,
+                "file": str(frame.output),
+                "preview": None if frame.preview is None else str(frame.preview),
+                **frame.settings.recipe(),
+                "set": self.planet(frame).recipe.get("set", {}),
+                **frame.attributes,
+            }
+            for frame in self.frames
+        ]

@@ -1,0 +1,62 @@
+"""Frames on the threads of this process, which share the tables of the air."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, as_completed, wait
+from contextlib import contextmanager
+
+from skybake.sequence.frame import Look, Outcome, finish_frame
+from skybake.sequence.plan import Frame, Plan
+from skybake.transport.kernel import lone_threads, thread_count
+
+Done = tuple[Frame, Outcome | Exception]
+Run = Callable[[Sequence[Frame]], Iterator[Done]]
+"""Bakes frames and yields each when it is done or has failed, in any order."""
+
+_ANSWER_WITHIN = 0.4
+
+
+@contextmanager
+def local_pool(plan: Plan, look: Look, workers: int | None = None) -> Iterator[Run]:
+    """Bake several frames at once.
+
+    Parameters
+    ----------
+    plan : Plan
+        The sequence.
+    look : Look
+        How its frames are shown.
+    workers : int, optional
+        Frames at once; default one for each CPU. A single one uses all CPUs, which
+        is slower but takes the memory of one frame.
+
+    Notes
+    -----
+    Threads: kernels, compression and files hold no lock of the interpreter.
+    """
+    workers = min(workers or thread_count(), max(len(plan.frames), 1))
+    stop = threading.Event()
+    threads = ThreadPoolExecutor(1) if workers == 1 else lone_threads(workers)
+    pending: dict[Future[Outcome], Frame] = {}
+
+    def run(frames: Sequence[Frame]) -> Iterator[Done]:
+        pending.clear()
+        for frame in frames:
+            future = threads.submit(finish_frame, frame, plan.planet(frame), look, stop.is_set)
+            pending[future] = frame
+        for future in as_completed(pending):
+            error = future.exception()
+            if error is not None and not isinstance(error, Exception):
+                raise error
+            yield pending[future], error or future.result()
+
+    try:
+        yield run
+    finally:
+        stop.set()
+        threads.shutdown(wait=False, cancel_futures=True)
+        # What is being written stops at its next band and takes its hidden folder along.
+        begun = [future for future in pending if not future.cancelled()]
+        wait(begun, timeout=_ANSWER_WITHIN)

@@ -1,0 +1,226 @@
+"""The folder in which compiled kernels and tables stay between runs.
+
+Every file is a SHA-256 digest and what it is a digest of, so that what was cut short,
+or comes from elsewhere, is made anew instead of being trusted.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import os
+import shutil
+import sys
+import time
+import uuid
+import warnings
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+
+import skybake
+
+UNUSED_AFTER = 30 * 86400.0
+"""Age after which the folder of another version goes, if it was not used meanwhile. [s]"""
+
+KERNEL_SUFFIX = ".kernel"
+TABLES_FOLDER = "atmospheres"
+TABLES_SUFFIX = ".tables"
+
+_KERNEL_PACKAGES = ("optics", "transport", "luts", "sky", "projection", "reference")
+_DIGEST_SIZE = hashlib.sha256().digest_size
+_PREFIX = "kernels-"
+_DAY = 86400.0
+_OTHERS_MAY_WRITE = 0o002
+
+
+@functools.cache
+def cache_directory() -> Path | None:
+    """Folder of this version's kernels and tables, or None where none can be written.
+
+    It is named by a digest of the kernels' sources and of what compiles them.
+    SKYBAKE_CACHE_DIR and NUMBA_CACHE_DIR take precedence over the user's cache
+    folder. A folder that others can write to is not used, since a compiled kernel is
+    a program.
+    """
+    parent = cache_root()
+    if parent is None:
+        warn_of_no_cache("SKYBAKE_CACHE_DIR: kernel cache must be given without a home folder")
+        return None
+    directory = parent / f"{_PREFIX}{_source_hash()}"
+    is_new = not directory.is_dir()
+    try:
+        directory.mkdir(0o755, parents=True, exist_ok=True)
+    except OSError:
+        writable = False
+    else:
+        writable = os.access(directory, os.W_OK | os.X_OK)
+    if not writable:
+        warn_of_no_cache(f"{directory}: kernel cache must be writable")
+        return None
+    if not _is_private(directory):
+        warn_of_no_cache(f"{directory}: kernel cache must be writable for its owner only")
+        return None
+    if is_new:
+        _remove_unused(parent)
+    with suppress(OSError):
+        if time.time() - directory.stat().st_mtime > _DAY:
+            os.utime(directory)
+    return directory
+
+
+def cache_root() -> Path | None:
+    """Folder that holds those of all versions; None without a home."""
+    configured = os.environ.get("SKYBAKE_CACHE_DIR") or os.environ.get("NUMBA_CACHE_DIR")
+    return Path(configured) if configured else _user_cache()
+
+
+def is_warm() -> bool:
+    """Whether compiled kernels of this version lie on disk."""
+    directory = cache_directory()
+    return directory is not None and any(directory.glob(f"*{KERNEL_SUFFIX}"))
+
+
+def seal(content: bytes) -> bytes:
+    """Return content behind its digest."""
+    return hashlib.sha256(content).digest() + content
+
+
+def unseal(sealed: bytes) -> memoryview | None:
+    """Return the content of what `seal` made, or None if it is not as it was made."""
+    content = memoryview(sealed)[_DIGEST_SIZE:]
+    return content if hashlib.sha256(content).digest() == sealed[:_DIGEST_SIZE] else None
+
+
+def read_sealed(path: Path) -> memoryview | None:
+    """Return the content of a file, or None if it is missing or not as it was written."""
+    try:
+        return unseal(path.read_bytes())
+    except OSError:
+        return None
+
+
+def write_sealed(path: Path, content: bytes) -> None:
+    """Write a file beside its name and rename it.
+
+    Raises
+    ------
+    OSError
+        If there is no room for it; nothing is left then.
+    """
+    temporary = path.with_name(f".{path.stem}-{uuid.uuid4().hex[:16]}{path.suffix}")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        temporary.write_bytes(seal(content))
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+@dataclass(frozen=True)
+class Usage:
+    """What a version's folder holds.
+
+    Attributes
+    ----------
+    folder : Path
+        Where.
+    kernels, tables : int
+        How many files of either kind.
+    kernel_bytes, table_bytes : int
+        Their sizes. [byte]
+    """
+
+    folder: Path
+    kernels: int
+    kernel_bytes: int
+    tables: int
+    table_bytes: int
+
+
+def cache_usage() -> list[Usage]:
+    """Return what the folders of all versions hold."""
+    return [_usage(folder) for folder in _folders(cache_root())]
+
+
+def clear_cache() -> None:
+    """Remove the folders of all versions, and nothing else that lies beside them."""
+    for folder in _folders(cache_root()):
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+@functools.cache
+def warn_of_full_disk(directory: Path) -> None:
+    """Warn once that compiled kernels could not be kept."""
+    warn_of_no_cache(f"{directory}: kernel cache must have room")
+
+
+def warn_of_no_cache(fault: str) -> None:
+    """Warn that every process compiles by itself."""
+    warnings.warn(f"{fault}; compiling anew in every process", RuntimeWarning, stacklevel=3)
+
+
+def _usage(folder: Path) -> Usage:
+    kernels = _sizes(folder, KERNEL_SUFFIX)
+    tables = _sizes(folder / TABLES_FOLDER, TABLES_SUFFIX)
+    return Usage(folder, len(kernels), sum(kernels), len(tables), sum(tables))
+
+
+def _sizes(folder: Path, suffix: str) -> list[int]:
+    sizes = []
+    for path in folder.glob(f"*{suffix}"):
+        # Another process may have removed it.
+        with suppress(FileNotFoundError):
+            sizes.append(path.stat().st_size)
+    return sizes
+
+
+def _folders(parent: Path | None) -> Iterator[Path]:
+    if parent is not None and parent.is_dir():
+        yield from sorted(path for path in parent.glob(f"{_PREFIX}*") if path.is_dir())
+
+
+def _remove_unused(parent: Path) -> None:
+    """Remove what other versions left and no process has used for long."""
+    for folder in _folders(parent):
+        with suppress(OSError):
+            if time.time() - folder.stat().st_mtime > UNUSED_AFTER:
+                shutil.rmtree(folder, ignore_errors=True)
+
+
+def _is_private(directory: Path) -> bool:
+    if not hasattr(os, "getuid"):
+        return True
+    state = directory.stat()
+    return state.st_uid in {0, os.getuid()} and not state.st_mode & _OTHERS_MAY_WRITE
+
+
+@functools.cache
+def _source_hash() -> str:
+    """Digest of what compiled kernels depend on beside the processor.
+
+    The sources, because numba does not notice an edit to a kernel that another file's
+    kernel calls (numba issue 9483).
+    """
+    package = Path(__file__).parent.parent
+    made_by = (skybake.__version__, version("numba"), version("llvmlite"))
+    digest = hashlib.sha256(" ".join((*made_by, sys.implementation.cache_tag)).encode())
+    for name in _KERNEL_PACKAGES:
+        for source in sorted((package / name).glob("*.py")):
+            digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _user_cache() -> Path | None:
+    """Folder for this program's files by the platform's convention; None without a home."""
+    configured = os.environ.get("LOCALAPPDATA" if sys.platform == "win32" else "XDG_CACHE_HOME")
+    if configured:
+        return Path(configured) / "skybake"
+    try:
+        home = Path.home()
+    except RuntimeError:
+        return None
+    within = {"win32": "AppData/Local", "darwin": "Library/Caches"}.get(sys.platform, ".cache")
+    return home / within / "skybake"

@@ -1,0 +1,45 @@
+"""A preset that was tampered with is refused in one line, or becomes a map of finite numbers."""
+
+import warnings
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+
+from skybake.errors import PresetWarning, SkybakeError
+from skybake.preset import load_preset
+from skybake.preset.toml import toml_text
+from tests.baking.maps import bake_map, pixels
+from tests.preset.test_mutations import mutants
+
+
+def bakes_finite_map_or_refuses(folder, preset, method):
+    path = folder / "own.toml"
+    path.write_text(toml_text(preset), encoding="utf-8")
+    refusal = None
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PresetWarning)
+        try:
+            planet = load_preset(path)
+            bake_map(folder / "a.exr", planet, 5.0, width=16, pixel="float", method=method)
+        except SkybakeError as error:
+            refusal = str(error)
+    if refusal is None:
+        assert np.isfinite(pixels(folder / "a.exr")).all()
+    else:
+        assert len(refusal.splitlines()) == 1
+        assert refusal.strip()
+        assert not (folder / "a.exr").exists()
+
+
+@settings(max_examples=60)
+@given(mutants())
+def test_a_mutated_preset_is_refused_in_a_line_or_becomes_a_finite_map(tmp_path_factory, preset):
+    bakes_finite_map_or_refuses(tmp_path_factory.mktemp("mutant"), preset, "hillaire")
+
+
+@pytest.mark.slow
+@settings(max_examples=200)
+@given(mutants())
+def test_two_hundred_mutated_presets_are_refused_or_become_finite_maps(tmp_path_factory, preset):
+    bakes_finite_map_or_refuses(tmp_path_factory.mktemp("mutant"), preset, "full")

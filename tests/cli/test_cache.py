@@ -1,0 +1,90 @@
+"""``skybake cache``: what it shows, frees and compiles."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.cli.runs import SMALL, invoke, run
+
+
+@pytest.fixture
+def cold(tmp_path):
+    return {"SKYBAKE_CACHE_DIR": str(tmp_path / "cache")}
+
+
+def info(environment):
+    status, output, errors = run("cache", "info", "--json", env=environment)
+    assert (status, errors) == (0, "")
+    return json.loads(output)
+
+
+def test_info_tells_what_each_version_has(tmp_path, cold):
+    old = tmp_path / "cache" / "kernels-0123"
+    (old / "atmospheres").mkdir(parents=True)
+    (old / "a.kernel").write_bytes(bytes(1000))
+    (old / "atmospheres" / "b.tables").write_bytes(bytes(2_000_000))
+    found = info(cold)
+    assert found["folder"] == str(tmp_path / "cache")
+    (other,) = (version for version in found["versions"] if not version["present"])
+    assert other == {
+        "folder": str(old),
+        "present": False,
+        "kernels": 1,
+        "kernel_bytes": 1000,
+        "atmospheres": 1,
+        "atmosphere_bytes": 2_000_000,
+    }
+    _, text, _ = run("cache", "info", env=cold)
+    assert "kernels-0123: 1 kernels 0.0 MB, 1 atmospheres 2.0 MB" in text
+    assert text.count("(this version)") == 1
+
+
+def test_clear_leaves_what_is_not_ours(tmp_path, cold):
+    folder = tmp_path / "cache"
+    (folder / "kernels-0123" / "atmospheres").mkdir(parents=True)
+    (folder / "kernels-0123" / "atmospheres" / "b.tables").write_bytes(bytes(2_000_000))
+    (folder / "kernels-file").write_text("not a folder")
+    (folder / "notes").mkdir()
+    assert run("cache", "clear", env=cold) == (0, "2.0 MB freed\n", "")
+    assert sorted(path.name for path in folder.iterdir()) == ["kernels-file", "notes"]
+
+
+def test_clear_of_nothing_is_no_fault(cold):
+    assert run("cache", "clear", env=cold) == (0, "0.0 MB freed\n", "")
+
+
+def test_warm_refuses_an_unknown_preset():
+    result = invoke("cache", "warm", "--preset", "nowhere")
+    assert result.exit_code == 1
+    assert "nowhere" in result.stderr
+
+
+USES = [
+    ("render", *SMALL, "--preset", "mars", "--sun", "20deg"),
+    ("render", *SMALL, "--sun", "-4deg", "--preview"),
+    ("render", *SMALL, "--altitude", "36000km", "--sun", "-12deg"),
+    ("render", *SMALL, "--preset", "earth-hillaire2020", "--method", "march"),
+    ("render", *SMALL, "--method", "hillaire", "--sun-disc", "only"),
+    ("render", "--projection", "cubemap", "--size", "32", "--cube-layout", "cross"),
+    ("render", "--projection", "cubemap", "--size", "32", "--altitude", "400km"),
+]
+
+
+@pytest.mark.slow
+def test_after_warm_nothing_is_compiled(tmp_path, cold):
+    assert run("cache", "warm", "-q", env=cold) == (0, "", "")
+
+    def kernels():
+        files = Path(cold["SKYBAKE_CACHE_DIR"]).rglob("*.kernel")
+        return {path: path.stat().st_mtime_ns for path in files}
+
+    compiled = kernels()
+    assert compiled
+    for use in USES:
+        status, _, errors = run(*use, "-q", "-o", "a.exr", cwd=tmp_path, env=cold)
+        assert (status, errors) == (0, "")
+    for method in ("full", "reference"):
+        status, _, errors = run("probe", "--method", method, env=cold)
+        assert (status, errors) == (0, "")
+    assert kernels() == compiled

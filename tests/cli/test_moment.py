@@ -1,0 +1,282 @@
+"""Suns by place and time."""
+
+import json
+import math
+from datetime import UTC, datetime
+from pathlib import Path
+
+import click
+import numpy as np
+import pytest
+
+from skybake.commands.moment import moments
+from skybake.commands.parameters import latitude, longitude
+from skybake.ephemeris.earth import refraction, sun_position
+from skybake.ephemeris.mars import SITES, mars_time
+from skybake.ephemeris.mars import sun_position as sun_from_mars
+from skybake.ephemeris.place import Place
+from skybake.formats.reader import read_image
+from tests.cli.runs import SMALL, invoke, listing
+from tests.cli.test_faults import check_fault, table
+
+PARIS = ("--lat", "48.8566", "--lon", "2.3522")
+MARS = ("--preset", "mars")
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def render(*arguments):
+    """Render quietly; returns the printed object and the file's attributes and pixels."""
+    result = invoke("render", *SMALL, "--json", "--quiet", "-o", "a.exr", *arguments)
+    assert result.exit_code == 0, result.output
+    pixels, attributes = read_image(Path("a.exr"))
+    return json.loads(result.stdout), attributes, pixels
+
+
+def direction(elevation, azimuth):
+    return [
+        math.cos(elevation) * math.sin(azimuth),
+        math.sin(elevation),
+        -math.cos(elevation) * math.cos(azimuth),
+    ]
+
+
+def test_the_sun_stands_where_it_does_at_that_time_and_place():
+    told, attributes, _ = render(*PARIS, "--time", "2026-06-21T10:00+02:00")
+    place = Place(math.radians(48.8566), math.radians(2.3522))
+    sun = sun_position(datetime(2026, 6, 21, 8, tzinfo=UTC), place)
+    assert told["sun_direction"] == pytest.approx(direction(*sun), abs=1e-12)
+    assert told["time"] == attributes["skybake:time"] == "2026-06-21T08:00:00Z"
+    assert attributes["skybake:latitude"] == pytest.approx(48.8566, rel=1e-6)
+    assert attributes["skybake:longitude"] == pytest.approx(2.3522, rel=1e-6)
+    assert "skybake:refraction" not in attributes
+    recipe = json.loads(attributes["skybake:recipe"])["map"]
+    assert recipe["sun_elevation_deg"] == pytest.approx(math.degrees(sun[0]), abs=1e-9)
+    assert not [key for key in recipe if "time" in key or "latitude" in key]
+
+
+def test_without_a_time_nothing_is_said_of_one():
+    told, attributes, _ = render()
+    assert told["time"] is None
+    assert not {"skybake:time", "skybake:latitude", "skybake:longitude"} & set(attributes)
+
+
+@pytest.mark.parametrize(
+    ("place", "date", "column"),
+    [(("--lat", "48N", "--lon", "0"), "2026-12-21", 32), (("--lat", "48S", "--lon", "0"), "", 0)],
+)
+def test_the_noon_sun_is_in_the_middle_of_the_north_and_on_the_seam_of_the_south(
+    place, date, column
+):
+    *_, pixels = render(
+        *place, "--date", date or "2026-06-21", "--time", "noon", "--sun-disc", "only"
+    )
+    lit = np.flatnonzero(pixels.sum(axis=(0, 2)))
+    # The disc is thinner than a column; it stands on the border of two.
+    assert set(lit) <= {(column - 1) % 64, column}
+    assert lit.size
+
+
+def test_a_polar_day_has_a_sun_at_midnight():
+    told, *_ = render(
+        *("--lat", "69.6492", "--lon", "18.9553", "--tz", "Europe/Oslo"),
+        *("--date", "2026-06-21", "--time", "midnight"),
+    )
+    assert told["sun_direction"][1] == pytest.approx(math.sin(math.radians(3.09)), abs=1e-3)
+
+
+def test_refraction_lifts_the_sun_and_is_told():
+    arguments = (*PARIS, "--date", "2026-03-20", "--tz", "Europe/Paris", "--time", "sunset")
+    below, *_ = render(*arguments)
+    lifted, attributes, _ = render(*arguments, "--refraction")
+    geometric = math.asin(below["sun_direction"][1])
+    assert math.degrees(geometric) == pytest.approx(-50 / 60, abs=0.003)
+    lift = refraction(geometric)
+    assert math.asin(lifted["sun_direction"][1]) == pytest.approx(geometric + lift, abs=1e-12)
+    assert attributes["skybake:refraction"] == pytest.approx(math.degrees(lift), rel=1e-6)
+
+
+def test_mars_has_the_sun_of_its_own_time():
+    told, attributes, _ = render(*MARS, "--site", "gale", "--time", "2026-06-21T04:00Z")
+    time = datetime(2026, 6, 21, 4, tzinfo=UTC)
+    sun = sun_from_mars(time, SITES["gale"])
+    assert told["sun_direction"] == pytest.approx(direction(*sun), abs=1e-12)
+    assert told["time"] == attributes["skybake:time"] == "2026-06-21T04:00:00Z"
+    season = math.degrees(mars_time(time).solar_longitude)
+    assert attributes["skybake:solarLongitude"] == pytest.approx(season, rel=1e-6)
+    hours = 12 + 12 / math.pi * mars_time(time).hour_angle(SITES["gale"].longitude)
+    clock = [int(part) for part in attributes["skybake:trueSolarTime"].split(":")]
+    assert clock[0] + clock[1] / 60 + clock[2] / 3600 == pytest.approx(hours, abs=1.5e-4)
+
+
+@pytest.mark.parametrize("place", [("--site", "gale"), ("--lat", "4.59S", "--lon", "137.44E")])
+def test_a_season_of_mars_goes_by_true_solar_time(place):
+    told, attributes, _ = render(*MARS, *place, "--ls", "0", "--time", "06:00")
+    assert told["sun_direction"] == pytest.approx([1.0, 0.0, 0.0], abs=1e-12)
+    assert told["time"] is None
+    assert attributes["skybake:solarLongitude"] == 0.0
+    assert attributes["skybake:trueSolarTime"] == "06:00:00"
+    assert attributes["skybake:latitude"] == pytest.approx(-4.59, rel=1e-6)
+
+
+USAGE = """
+--time 2026-06-21T04:00Z => --time: needs --lat and --lon, or on Mars --site
+--lat 1 --time 2026-06-21T04:00Z => --lat: needs --lon beside it
+--lon 1 --time 2026-06-21T04:00Z => --lon: needs --lat beside it
+--lat 1 --lon 2 => --lat: needs --time
+--site gale => --site: needs --time
+--ls 180 => --ls: needs --time
+--tz UTC => --tz: needs --time
+--date 2026-06-21 => --date: needs --time
+--refraction => --refraction: needs --time
+P --time 2026-06-21T04:00Z --sun 30deg => --sun: needs no --time beside it
+P --time 2026-06-21T04:00Z --sun-azimuth 180deg => --sun-azimuth: needs no --time beside it
+P --time 2026-06-21T04:00 => --time: needs an offset, as 2026-06-21T04:00Z or
+P --time 2026-03-29T02:30 --tz Europe/Paris => --time: is never shown in Europe/Paris, where
+P --time 2026-10-25T02:30 --tz Europe/Paris => --time: is shown twice in Europe/Paris, write
+P --time 2026-06-21T04:00 --tz Europe/Pari => --tz: unknown time zone 'Europe/Pari'; nearest:
+P --time 2026-06-21T04:00Z --tz Europe/Paris => --tz: needs a time without an offset of its own
+P --time 2026-06-21T04:00Z --date 2026-06-21 => --date: needs --time sunset or the like
+P --time sunset => --time sunset: needs --date
+P --time sunzet --date 2026-06-21 => --time: must be as 2026-06-21T04:00Z or an event
+P --time 04:00 => --time: must be as 2026-06-21T04:00Z or an event
+P --time sunset --date 21.6.2026 => '--date': must be a date such as 2026-06-21, got
+P --time sunset --date 2026-02-30 => '--date': must be a date such as 2026-06-21, got
+T --time sunset --date 2026-06-21 => --time: sunset: the sun does not set at 69.65N
+T --time noon-1x --date 2026-06-21 => --time: must be a duration such as 10min
+P --site gale --time 2026-06-21T04:00Z => --site: needs no --lat and --lon beside it
+P --time 2026-06-21T04:00Z --preset mars-storm => --time: on Mars needs --site or --ls, got --preset
+P --time 2026-06-21T04:00Z --preset titan => --time: the sun is known on Earth and Mars, got
+M --site gale --time 2026-06-21T04:00Z --preset earth-hazy => --site: is for Mars, needs --preset ma
+M --site gale --time 16:30 => --time: on Mars must be as 2026-06-21T04:00Z, or
+M --site gale --time sunset --date 2026-06-21 => --time: on Mars must be as 2026-06-21T04:00Z, or
+M --site gale --time 1960-06-21T04:00Z => --time: on Mars must be in the years 1972 to 2127
+M --site gale --time 16:30 --ls 180 --tz UTC => --tz: needs no --ls, which goes with solar time
+M --site gale --time 16:30 --ls 180 --date 2026-06-21 => --date: needs no --ls, which goes with
+M --site gale --time 16:30 --ls 180 --refraction => --refraction: is that of Earth's air, needs no
+M --site gale --time 25:00 --ls 180 => --time: must be a time of day such as 04:00 or
+M --site gale --time 2026-06-21T04:00Z --ls 180 => --time: must be a time of day such as 04:00 or
+M --site gale --time 16:30 --ls 361 => '--ls': must be from 0deg to 360deg, got 361
+M --time 16:30 --ls 180 => --time: needs --lat and --lon, or on Mars --site
+M --site venus --time 16:30 --ls 180 => '--site': 'venus' is not one of 'ares-vallis',
+--lat 91 --lon 0 --time 2026-06-21T04:00Z => '--lat': must be from -90deg to 90deg, got 91
+--lat -5S --lon 0 --time 2026-06-21T04:00Z => '--lat': must have a sign or S, not both, got -5S
+--lat 5E --lon 0 --time 2026-06-21T04:00Z => '--lat': must be an angle such as 5deg
+--lat 5 --lon 361 --time 2026-06-21T04:00Z => '--lon': must be from -180deg to 360deg, got 361
+--lat 5 --lon 181W --time 2026-06-21T04:00Z => '--lon': must be from -180deg to 360deg, got 181W
+"""
+SHORT = {"P": PARIS, "T": ("--lat", "69.65", "--lon", "18.96"), "M": MARS}
+
+
+@pytest.mark.parametrize(("arguments", "message"), table(USAGE))
+def test_wrong_usage_is_one_line_exit_2_and_no_file(folder, arguments, message):
+    first, *rest = arguments.split()
+    result = invoke("render", *SHORT.get(first, (first,)), *rest)
+    check_fault(result, 2, message)
+    assert listing(folder) == []
+
+
+def test_a_world_of_ones_own_may_be_anywhere(folder):
+    Path("own.toml").write_text('extends = "mars"\n', encoding="utf-8")
+    result = invoke("render", "--preset", "own.toml", *PARIS, "--time", "2026-06-21T04:00Z")
+    check_fault(result, 2, "--time: on Mars needs --site or --ls, got --preset own.toml")
+    result = invoke("presets", "show", "--resolved", "titan")
+    Path("alone.toml").write_text(result.stdout, encoding="utf-8")
+    result = invoke("render", "--preset", "alone.toml", *PARIS, "--time", "x")
+    check_fault(result, 2, "--time: must be as 2026-06-21T04:00Z")
+
+
+@pytest.mark.parametrize(
+    ("text", "degrees"),
+    [("48.8566", 48.8566), ("48.8566deg", 48.8566), ("5S", -5), ("5degN", 5), ("-5", -5)],
+)
+def test_a_latitude_is_read_with_a_sign_or_a_letter(text, degrees):
+    assert math.degrees(latitude(text)) == pytest.approx(degrees, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("text", "degrees"), [("78.5W", -78.5), ("181.5", -178.5), ("360E", 0), ("-180", 180)]
+)
+def test_a_longitude_is_read_with_a_sign_or_a_letter(text, degrees):
+    assert math.remainder(math.degrees(longitude(text)) - degrees, 360) == pytest.approx(
+        0.0, abs=1e-12
+    )
+    assert abs(longitude(text)) <= math.pi
+
+
+def a_range(start, end, count=None, **options):
+    given = dict.fromkeys(("lat", "lon", "site", "ls", "tz", "date", "every"))
+    given |= {"preset": "mars" if {"site", "ls"} & options.keys() else "earth"}
+    given |= {"refraction": False, "start": start, "end": end}
+    return moments(given | options, count)
+
+
+IN_PARIS = {"lat": math.radians(48.8566), "lon": math.radians(2.3522)}
+SUMMER = datetime(2026, 6, 21, tzinfo=UTC).date()
+
+
+def test_a_range_has_its_end_and_local_labels_across_a_change_of_clocks():
+    found = a_range(
+        "2026-03-29T01:00", "2026-03-29T04:00", every=3600.0, tz="Europe/Paris", **IN_PARIS
+    )
+    assert [one.label for one in found] == [
+        "2026-03-29T01:00:00+01:00",
+        "2026-03-29T03:00:00+02:00",
+        "2026-03-29T04:00:00+02:00",
+    ]
+    assert [one.time.hour for one in found] == [0, 1, 2]
+    place = Place(**dict(zip(("latitude", "longitude"), IN_PARIS.values(), strict=True)))
+    for one in found:
+        assert (one.sun_elevation, one.sun_azimuth) == sun_position(one.time, place)
+        assert one.attributes["skybake:time"] == f"{one.time:%Y-%m-%dT%H:%M:%SZ}"
+
+
+def test_a_count_is_spread_evenly_with_start_and_end():
+    found = a_range("2026-06-21T04:00Z", "2026-06-21T05:00Z", 4, **IN_PARIS)
+    assert [one.label for one in found] == [
+        f"2026-06-21T{clock}:00Z" for clock in ("04:00", "04:20", "04:40", "05:00")
+    ]
+    assert len(a_range("2026-06-21T04:00Z", "2026-06-21T05:00Z", 1, **IN_PARIS)) == 1
+
+
+def test_a_night_goes_from_sunset_to_the_next_sunrise():
+    found = a_range("sunset", "sunrise", 3, date=SUMMER, tz="Europe/Paris", **IN_PARIS)
+    assert found[0].label.startswith("2026-06-21T21:57")
+    assert found[-1].label.startswith("2026-06-22T05:47")
+    assert found[0].sun_elevation == pytest.approx(math.radians(-50 / 60), abs=4e-5)
+    assert found[-1].sun_elevation == pytest.approx(math.radians(-50 / 60), abs=4e-5)
+    assert found[1].sun_elevation < math.radians(-15.0)
+
+
+def test_a_day_on_mars_goes_by_its_own_clock():
+    found = a_range("04:00", "20:00", every=3600.0, ls=math.pi, site="gale")
+    assert len(found) == 17
+    assert found[0].label == "Ls 180 04:00:00"
+    assert all(one.time is None for one in found)
+    assert found[8].sun_elevation == max(one.sun_elevation for one in found)
+    night = a_range("22:00", "02:00", 3, ls=math.pi, site="gale")
+    assert [one.label for one in night] == [f"Ls 180 {h}:00:00" for h in ("22", "00", "02")]
+    dates = a_range("2026-06-21T04:00Z", "2026-06-22T04:00Z", 2, site="jezero")
+    assert [one.label for one in dates] == ["2026-06-21T04:00:00Z", "2026-06-22T04:00:00Z"]
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "options", "message"),
+    [
+        ("2026-06-21T04:00Z", "2026-06-21T04:00Z", {}, "--to: must be after the start"),
+        ("2026-06-21T04:00", "2026-06-21T05:00Z", {}, "--from: needs an offset"),
+        ("2026-06-21T04:00Z", "x", {}, "--to: must be as 2026-06-21T04:00Z"),
+        ("2026-06-21T04:00Z", "sunset", {}, "--to sunset: needs --date"),
+        ("2026-06-21T04:00Z", "2026-06-21T05:00Z", {"every": 0.0}, "--every: must be longer than"),
+        ("2026-06-21T04:00Z", "2026-06-22T05:00Z", {"every": 0.1}, "--every: must give at most 10"),
+        ("2026-06-21T04:00Z", "2026-06-21T05:00Z", {"count": 0}, "--frames: must be from 1 to 10"),
+    ],
+)
+def test_a_faulty_range_names_the_option(start, end, options, message):
+    with pytest.raises(click.UsageError) as caught:
+        a_range(start, end, **IN_PARIS, **({"count": 2} | options))
+    assert caught.value.message.startswith(message)
