@@ -85,16 +85,16 @@ def add_diffuse(field, medium, fans, begin, end, samples, out):
         r, mu = fans.starts[fan, 0], fans.starts[fan, 1]
         first = samples.first[fan - begin]
         last = first + samples.number[fan - begin]
-        for k in range(wavelengths):
-            negligible[k] = 0.0
-        for n in range(first, last, 2):
-            _fill_scattering(field, samples, n, np.int64(1), weight, scattering)
-            for k in range(wavelengths):
-                negligible[k] += np.float32(NEGLIGIBLE) * scattering[0, k]
+        negligible[:] = 0.0
+        for n in range(first, last):
+            for c in range(field.source.shape[0]):
+                density = NEGLIGIBLE * samples.density[n, c]
+                for k in range(wavelengths):
+                    negligible[k] += density * field.source[c, 0, k] * samples.weight[n, k]
         # The field is smooth within a step, so that its two samples share a lookup where
         # the middle of what they scatter lies.
         for n in range(first, last, 2):
-            _fill_scattering(field, samples, n, order + 1, weight, scattering)
+            _fill_scattering(field, samples, n, weight, scattering)
             degrees = _count_degrees(scattering, negligible)
             if degrees == 0:
                 continue
@@ -124,18 +124,16 @@ def add_diffuse(field, medium, fans, begin, end, samples, out):
 
 
 @inner_kernel
-def _fill_scattering(field, samples, n, degrees, weight, out):
+def _fill_scattering(field, samples, n, weight, out):
     """Write weight * scattering coefficient * chi_l of a step's samples, (degree, wavelength)."""
-    for degree in range(degrees):
-        for k in range(out.shape[1]):
-            out[degree, k] = 0.0
+    out[...] = 0.0
     for c in range(field.source.shape[0]):
         low, high = samples.density[n, c], samples.density[n + 1, c]
         if low + high == 0.0:
             continue
         for k in range(weight.size):
             weight[k] = low * samples.weight[n, k] + high * samples.weight[n + 1, k]
-        for degree in range(degrees):
+        for degree in range(out.shape[0]):
             for k in range(weight.size):
                 out[degree, k] += np.float32(field.source[c, degree, k]) * weight[k]
 

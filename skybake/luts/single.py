@@ -42,7 +42,6 @@ def add_single_scattering(cut, nodes, columns, fans, begin, end, samples, out):
         np.empty((constituents, most), np.float32),
         np.empty((wavelengths, most), np.float32),
         np.empty(constituents),
-        np.empty(constituents),
     )
     depth, light = np.empty(most, np.float32), np.empty(most, np.float32)
     filled = np.empty(most, np.float32)

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.luts.transmittance import fill_sun_column
-from skybake.transport.density import GAUSS_FAR, GAUSS_LOW, GAUSS_SELF, fill_density
+from skybake.transport.density import GAUSS_FAR, GAUSS_LOW, GAUSS_SELF
 from skybake.transport.exponential import fast_exp
 from skybake.transport.geometry import radius_at, shadow_interval
 from skybake.transport.kernel import inner_kernel
@@ -31,8 +31,8 @@ class Sunlit(NamedTuple):
         Relative densities.
     weight : ndarray of float32, shape (wavelength, sample)
         As in `Samples`. [km]
-    column, mixture : ndarray of float64, shape (constituent,)
-        A column toward the sun [km], and densities; scratch.
+    column : ndarray of float64, shape (constituent,)
+        Scratch.
     """
 
     sunward: npt.NDArray[np.float32]
@@ -40,7 +40,6 @@ class Sunlit(NamedTuple):
     density: npt.NDArray[np.float32]
     weight: npt.NDArray[np.float32]
     column: npt.NDArray[np.floating[Any]]
-    mixture: npt.NDArray[np.floating[Any]]
 
 
 @inner_kernel
@@ -69,63 +68,50 @@ def gather_sunlit(medium, columns, ray, samples, first, last, length, out):
     for n in range(first, last, 2):
         step = (samples.distance[n + 1] - samples.distance[n]) / (1.0 - 2.0 * GAUSS_LOW)
         start = samples.distance[n] - GAUSS_LOW * step
-        if dark_last <= start or dark_first >= start + step:
-            for i in range(n, n + 2):
-                if _find_sun(
-                    medium, columns, ray, samples.distance[i], samples.radius[i], out.column
+        stop = start + step
+        for part in range(2):
+            # What lies before the shadow, then what lies behind it.
+            begin = start if part == 0 else max(start, dark_last)
+            end = min(stop, dark_first) if part == 0 else stop
+            if end <= begin:
+                continue
+            is_whole = begin == start and end == stop
+            for i in range(2):
+                distance, radius = samples.distance[n + i], samples.radius[n + i]
+                if not is_whole:
+                    distance = begin + (end - begin) * (GAUSS_LOW if i == 0 else 1.0 - GAUSS_LOW)
+                    radius = radius_at(r, mu, distance)
+                mu_s_here = (r * mu_s + distance * nu) / radius
+                if not fill_sun_column(
+                    columns, medium.r_bottom, medium.r_top, radius, mu_s_here, out.column
                 ):
-                    for c in range(out.column.size):
-                        out.sunward[c, count] = out.column[c]
-                        out.backward[c, count] = samples.column_to[i, c]
-                        out.density[c, count] = samples.density[i, c]
-                    for k in range(out.weight.shape[0]):
-                        out.weight[k, count] = samples.weight[i, k]
-                    count += 1
-            continue
-        if dark_first > start:
-            count = _cut_step(
-                medium, columns, ray, samples, n, start, step, start, dark_first, count, out
-            )
-        if dark_last < start + step:
-            count = _cut_step(
-                medium, columns, ray, samples, n, start, step, dark_last, start + step, count, out
-            )
+                    continue
+                # Density is taken as linear through the step's own two points, which is
+                # what their weights integrate.
+                x = (distance - start) / step
+                share = (x - GAUSS_LOW) / (1.0 - 2.0 * GAUSS_LOW)
+                bend = x * (0.5 * x - GAUSS_LOW) / (1.0 - 2.0 * GAUSS_LOW)
+                for c in range(out.column.size):
+                    low, high = samples.density[n, c], samples.density[n + 1, c]
+                    to_start = samples.column_to[n, c] - step * (
+                        GAUSS_SELF * low + GAUSS_FAR * high
+                    )
+                    out.sunward[c, count] = out.column[c]
+                    out.density[c, count] = low + share * (high - low)
+                    out.backward[c, count] = to_start + step * (x * low + bend * (high - low))
+                for k in range(out.weight.shape[0]):
+                    out.weight[k, count] = samples.weight[n + i, k]
+                if not is_whole:
+                    _fill_weight(medium, 0.5 * (end - begin), count, out)
+                count += 1
     return count
 
 
 @inner_kernel
-def _find_sun(medium, columns, ray, distance, radius, out):
-    """Write the columns from a point of a ray toward the sun, unless the planet blocks it."""
-    mu_s = (ray[0] * ray[2] + distance * ray[3]) / radius
-    return fill_sun_column(columns, medium.r_bottom, medium.r_top, radius, mu_s, out)
-
-
-@inner_kernel
-def _cut_step(medium, columns, ray, samples, n, start, step, begin, end, count, out):
-    """Add two samples for the part of a step between two distances; returns how many there are.
-
-    Columns follow from the density as linear through the step's own two points, which
-    is what these integrate.
-    """
-    for i in range(2):
-        distance = begin + (end - begin) * (GAUSS_LOW if i == 0 else 1.0 - GAUSS_LOW)
-        radius = radius_at(ray[0], ray[1], distance)
-        if not _find_sun(medium, columns, ray, distance, radius, out.column):
-            continue
-        h = radius - medium.r_bottom
-        fill_density(medium.density, medium.r_bottom, medium.r_top, h, out.mixture)
-        x = (distance - start) / step
-        bend = x * (0.5 * x - GAUSS_LOW) / (1.0 - 2.0 * GAUSS_LOW)
+def _fill_weight(medium, length, sample, out):
+    """Write a sample's length times its transmittance to the observer."""
+    for k in range(out.weight.shape[0]):
+        depth = 0.0
         for c in range(out.column.size):
-            low, high = samples.density[n, c], samples.density[n + 1, c]
-            to_start = samples.column_to[n, c] - step * (GAUSS_SELF * low + GAUSS_FAR * high)
-            out.sunward[c, count] = out.column[c]
-            out.backward[c, count] = to_start + step * (x * low + bend * (high - low))
-            out.density[c, count] = out.mixture[c]
-        for k in range(out.weight.shape[0]):
-            depth = 0.0
-            for c in range(out.column.size):
-                depth += medium.extinction[c, k] * out.backward[c, count]
-            out.weight[k, count] = 0.5 * (end - begin) * fast_exp(-depth)
-        count += 1
-    return count
+            depth += medium.extinction[c, k] * out.backward[c, sample]
+        out.weight[k, sample] = length * fast_exp(-depth)

@@ -117,14 +117,13 @@ def fill_sun_column(columns, r_bottom, r_top, r, mu_s, out):
     """
     for c in range(out.size):
         out[c] = 0.0
-    if mu_s >= 0.0:
-        _add_upward(columns, r_bottom, r_top, r - r_bottom, mu_s, 1.0, out)
-        return True
-    h_closest = r * math.sqrt(1.0 - mu_s * mu_s) - r_bottom
-    if h_closest < 0.0:
-        return False
-    _add_upward(columns, r_bottom, r_top, h_closest, 0.0, 2.0, out)
-    _add_upward(columns, r_bottom, r_top, r - r_bottom, -mu_s, -1.0, out)
+    if mu_s < 0.0:
+        h_closest = r * math.sqrt(1.0 - mu_s * mu_s) - r_bottom
+        if h_closest < 0.0:
+            return False
+        _add_upward(columns, r_bottom, r_top, h_closest, 0.0, 2.0, out)
+    sign = 1.0 if mu_s >= 0.0 else -1.0
+    _add_upward(columns, r_bottom, r_top, r - r_bottom, sign * mu_s, sign, out)
     return True
 
 
