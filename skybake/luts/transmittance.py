@@ -100,7 +100,7 @@ def fill_sun_column(columns, r_bottom, r_top, r, mu_s, out):
         Radii of the ground and of the top of the atmosphere. [km]
     r, mu_s : float
         Radius of the point, at most `r_top` [km], and cosine of the sun's zenith
-        angle there.
+        angle there; rounding may take it beyond -1.
     out : ndarray of float64, shape (constituent,)
         Receives the columns. [km]
 
@@ -118,7 +118,7 @@ def fill_sun_column(columns, r_bottom, r_top, r, mu_s, out):
     for c in range(out.size):
         out[c] = 0.0
     if mu_s < 0.0:
-        h_closest = r * math.sqrt(1.0 - mu_s * mu_s) - r_bottom
+        h_closest = r * math.sqrt(max(1.0 - mu_s * mu_s, 0.0)) - r_bottom
         if h_closest < 0.0:
             return False
         _add_upward(columns, r_bottom, r_top, h_closest, 0.0, 2.0, out)

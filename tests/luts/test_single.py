@@ -80,3 +80,13 @@ def test_rays_of_one_fan_are_as_they_are_alone():
     together = EARTH.single(RADIUS + 1.0, 0.1, mu_s, nu)
     alone = [EARTH.single(RADIUS + 1.0, 0.1, mu_s, one)[0] for one in nu]
     np.testing.assert_array_equal(together, alone)
+
+
+@pytest.mark.parametrize("h", [1e-8, 1e-3, 10.0, 1e4])
+@pytest.mark.parametrize("mu_s", [-1.0, 1.0])
+def test_a_sun_in_the_nadir_or_zenith_gives_numbers(h, mu_s):
+    mu = np.linspace(-1.0, 1.0, 2001)
+    light = EARTH.single(RADIUS + h, mu, mu_s, mu * mu_s)
+    assert np.isfinite(light).all()
+    if mu_s < 0.0 and h < 100.0:
+        assert (light == 0.0).all()
