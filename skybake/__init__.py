@@ -9,13 +9,13 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from skybake.version import __version__
+
 if TYPE_CHECKING:
     from skybake.baking import Baked, MapSettings, bake
     from skybake.errors import SkybakeError
     from skybake.preset import load_preset
     from skybake.sky.sky import Sky
-
-__version__ = "0.1.0"
 
 __all__ = ["Baked", "MapSettings", "Sky", "SkybakeError", "__version__", "bake", "load_preset"]
 

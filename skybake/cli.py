@@ -14,7 +14,6 @@ from typing import Any, NoReturn
 
 import click
 
-import skybake
 from skybake.commands.cache import cache
 from skybake.commands.memory import memory_limit
 from skybake.commands.presets import presets
@@ -23,6 +22,7 @@ from skybake.commands.probe import probe
 from skybake.commands.render import render
 from skybake.commands.sequence import sequence
 from skybake.errors import SkybakeError
+from skybake.version import __version__
 
 FAILED = 1
 INTERRUPTED = 130
@@ -149,7 +149,7 @@ def _show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
     cls=_CommandLine,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
-@click.version_option(skybake.__version__, message="%(prog)s %(version)s")
+@click.version_option(__version__, message="%(prog)s %(version)s")
 def main() -> None:
     """Bake physically based HDR sky maps for any sun, altitude and planet.
 

@@ -6,10 +6,10 @@ import hashlib
 import json
 from typing import Any
 
-import skybake
 from skybake.baking.settings import MapSettings
 from skybake.formats.spec import Attribute
 from skybake.preset import Planet
+from skybake.version import __version__
 
 HASH_ATTRIBUTE = "skybake:recipeHash"
 
@@ -21,7 +21,7 @@ def map_recipe(planet: Planet, settings: MapSettings) -> dict[str, Any]:
 
 def recipe_hash(planet: Planet, settings: MapSettings) -> str:
     """Digest of a map's recipe and of the version that bakes it."""
-    recipe = json.dumps([skybake.__version__, map_recipe(planet, settings)], sort_keys=True)
+    recipe = json.dumps([__version__, map_recipe(planet, settings)], sort_keys=True)
     return hashlib.sha256(recipe.encode()).hexdigest()[:32]
 
 

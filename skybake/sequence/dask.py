@@ -10,7 +10,6 @@ from dataclasses import replace
 from importlib.metadata import version
 from typing import Any
 
-import skybake
 from skybake.errors import InputError
 from skybake.luts.atmosphere import adopt_atmosphere, atmosphere_content
 from skybake.optics.medium import Medium
@@ -20,6 +19,7 @@ from skybake.sequence.plan import Frame, Plan
 from skybake.sequence.pool import Done, Run
 from skybake.sky.sky import Sky
 from skybake.transport.kernel import stay_in_thread
+from skybake.version import __version__
 
 CONNECT_WITHIN = 6
 """Time after which a scheduler counts as absent. [s]"""
@@ -112,7 +112,7 @@ def finish_on_worker(frame: Frame, planet: Planet, tables: Tables, look: Look) -
 def versions() -> dict[str, str]:
     """Return what a worker's pixels depend on beside the frame."""
     major, minor, _ = platform.python_version_tuple()
-    ours = {"skybake": skybake.__version__, "python": f"{major}.{minor}"}
+    ours = {"skybake": __version__, "python": f"{major}.{minor}"}
     return ours | {name: version(name) for name in _PACKAGES}
 
 

@@ -10,9 +10,9 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from skybake import __version__
 from skybake.formats.partial import replace_when_whole
 from skybake.sequence.frames import format_frames
+from skybake.version import __version__
 
 SCHEMA = 1
 """Goes up when a key of the JSON changes its meaning or goes."""

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 
-import skybake
+from skybake.version import __version__
 
 UNUSED_AFTER = 30 * 86400.0
 """Age after which the folder of another version goes, if it was not used meanwhile. [s]"""
@@ -205,7 +205,7 @@ def _source_hash() -> str:
     kernel calls (numba issue 9483).
     """
     package = Path(__file__).parent.parent
-    made_by = (skybake.__version__, version("numba"), version("llvmlite"))
+    made_by = (__version__, version("numba"), version("llvmlite"))
     digest = hashlib.sha256(" ".join((*made_by, sys.implementation.cache_tag)).encode())
     for name in _KERNEL_PACKAGES:
         for source in sorted((package / name).glob("*.py")):
