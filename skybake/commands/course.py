@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from skybake.sequence.frames import FramePattern
     from skybake.sequence.plan import Plan
 
-_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_NUMBER = r"[+-]?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?"
 _RANGE = re.compile(rf"({_NUMBER})\.\.({_NUMBER})", re.ASCII)
 
 
@@ -46,7 +46,9 @@ def plan_from_options(context: click.Context) -> Plan:
 
     along = shares(numbers)
     planets = _planets(options, along)
-    pattern = output_pattern(options, planets[0], numbers)
+    if options["output"] is None:
+        options["output"] = _default_output(planets)
+    pattern = output_pattern(options, numbers)
     previews = None
     if options["preview"] not in {None, request.BESIDE}:
         previews = _pattern("--preview", str(options["preview"]), numbers)
@@ -96,17 +98,23 @@ def part_of(plan: Plan, only: tuple[int, ...] | None) -> Plan:
     return part
 
 
-def output_pattern(
-    options: Mapping[str, Any], planet: Planet, numbers: Sequence[int] = ()
-) -> FramePattern:
-    """Return where the maps go.
+def output_pattern(options: Mapping[str, Any], numbers: Sequence[int] = ()) -> FramePattern:
+    """Return where the maps go, as `plan_from_options` has left it in the options.
 
     Raises
     ------
     click.UsageError
         If the option is no pattern, or has no place for the numbers of several frames.
     """
-    return _pattern("--output", str(options["output"] or f"{planet.name}.####.exr"), numbers)
+    return _pattern("--output", str(options["output"]), numbers)
+
+
+def _default_output(planets: Sequence[Planet]) -> Path:
+    """Name of the world, with what was set of it, unless that changes from frame to frame."""
+    from skybake.baking.paths import world_name
+
+    name = world_name(planets[0]) if len(planets) == 1 else planets[0].name
+    return Path(f"{name}.####.exr")
 
 
 def _pattern(option: str, text: str, numbers: Sequence[int]) -> FramePattern:

@@ -85,7 +85,7 @@ def emit(context: click.Context, numbers: Sequence[int]) -> bool:
     given = arguments(context)
     lines = farm.commands(given, frames.chunks(numbers, options["chunk_size"]))
     if options["emit_openjd"] is not None:
-        name = Path(options["output"] or options["preset"]).name
+        name = options["output"].name
         words = [*given, "--progress=openjd"]
         size, folder = options["chunk_size"], options["emit_openjd"]
         template = farm.write_openjd(folder, words, numbers, size, name)
@@ -120,7 +120,7 @@ def arguments(context: click.Context, leave_out: Collection[str] = ()) -> list[s
         values = given[name] if parameter.multiple else [given[name]]
         words += [_word(option, name, value) for value in values]
     if "output" not in given:
-        words.append(f"--output={Path.cwd() / Path(context.params['preset']).stem}.####.exr")
+        words.append(f"--output={context.params['output'].absolute()}")
     return words
 
 

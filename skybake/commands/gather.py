@@ -102,7 +102,7 @@ def _default_manifests(plan: Plan, options: Mapping[str, Any]) -> list[Path]:
     """JSON beside the maps; a part of a sequence would take that of another part."""
     if options["only"] is not None:
         return []
-    pattern = output_pattern(options, plan.planets[0])
+    pattern = output_pattern(options)
     before = pattern.before.replace("{face}", "").removesuffix(".exr").removesuffix(".hdr")
     stem = before.rstrip("._-")
     return [pattern.folder / f"{stem or plan.planets[0].name}.sequence.json"]

@@ -130,8 +130,15 @@ def ramp(read: Callable[[str], float]) -> Callable[[str], Ramp]:
     """Return what reads a value, or two with ``..`` between."""
 
     def read_ramp(text: str) -> Ramp:
+        if "..." in text:
+            raise click.BadParameter(f"must have two dots between two values, got {text}")
         first, dots, last = text.partition("..")
-        return Ramp(read(first), read(last if dots else first))
+        found = Ramp(read(first), read(last if dots else first))
+        unit = last.lstrip("+-.0123456789 ")
+        # Of 5..10km, people mean kilometres and a bare 5 is metres.
+        if unit and first.strip()[-1].isdigit() and read(first + unit) != found.first:
+            raise click.BadParameter(f"must have a unit on both sides, got {text}")
+        return found
 
     return read_ramp
 

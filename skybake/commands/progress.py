@@ -71,6 +71,12 @@ def progress(style: str, total: int, *, quiet: bool) -> Iterator[Progress]:
         yield Progress(style)
         return
     with click.progressbar(
-        length=total, label="baking", file=sys.stderr, item_show_func=lambda speed: speed
+        length=total,
+        label="baking",
+        file=sys.stderr,
+        item_show_func=lambda speed: speed,
+        show_eta=False,
+        show_percent=False,
+        show_pos=True,
     ) as bar:
         yield Progress(style, bar)

@@ -22,7 +22,7 @@ from skybake.reference.rays import (
     tangent_altitude,
     transmittance_to_space,
 )
-from skybake.transport.kernel import kernel
+from skybake.transport.kernel import shared_kernel
 
 ALTITUDES = 17
 SUNS = 97
@@ -57,7 +57,7 @@ class Guide(NamedTuple):
     top: float
 
 
-@kernel
+@shared_kernel
 def make_guide(air):
     """Light field of isotropic scattering, by a few orders, steps and rays."""
     top = air.altitude[-1]
@@ -78,7 +78,7 @@ def make_guide(air):
     return guide
 
 
-@kernel
+@shared_kernel
 def _add_diffusion(air, guide):
     """Light that seeps through thick air, which few orders leave dark, as 1 / optical depth."""
     k_last = len(air.altitude) - 1
@@ -94,7 +94,7 @@ def _add_diffusion(air, guide):
             guide.ambient[i, j] += mu_s * max(0.0, depth - 1.0) / (1.0 + depth) ** 2
 
 
-@kernel
+@shared_kernel
 def _gather(air, guide, i, j):
     """Fill the directions of one node from the guide's last state; returns its ambient light."""
     h = _altitude(i, guide.top)
@@ -112,25 +112,25 @@ def _gather(air, guide, i, j):
     return 4.0 * math.pi * mean
 
 
-@kernel
+@shared_kernel
 def _altitude(i, top):
     return top * (i / (ALTITUDES - 1)) ** 2
 
 
-@kernel
+@shared_kernel
 def _square(j, last):
     """From -1 to 1 over j = 0 to `last`, crowding at 0."""
     x = 2.0 * j / last - 1.0
     return x * abs(x)
 
 
-@kernel
+@shared_kernel
 def _cell_solid_angle(cell):
     e = cell // AZIMUTHS
     return (_square(e + 1, ELEVATIONS) - _square(e, ELEVATIONS)) * 2.0 * math.pi / AZIMUTHS
 
 
-@kernel
+@shared_kernel
 def _seen(air, guide, h, mu_s, cell):
     mu = 0.5 * (_square(cell // AZIMUTHS, ELEVATIONS) + _square(cell // AZIMUTHS + 1, ELEVATIONS))
     azimuth = (cell % AZIMUTHS + 0.5) * math.pi / AZIMUTHS
@@ -168,18 +168,18 @@ def _seen(air, guide, h, mu_s, cell):
     return radiance
 
 
-@kernel
+@shared_kernel
 def _sun_place(mu_s):
     root = math.copysign(math.sqrt(min(1.0, abs(mu_s))), mu_s)
     return 0.5 * (root + 1.0) * (SUNS - 1)
 
 
-@kernel
+@shared_kernel
 def _altitude_place(guide, h):
     return math.sqrt(min(1.0, max(0.0, h / guide.top))) * (ALTITUDES - 1)
 
 
-@kernel
+@shared_kernel
 def look_up(guide, table, h, mu_s):
     """One of the guide's tables around altitude `h` with the sun at cosine `mu_s`."""
     x = _altitude_place(guide, h)
@@ -193,7 +193,7 @@ def look_up(guide, table, h, mu_s):
     return (1.0 - u) * low + u * high
 
 
-@kernel
+@shared_kernel
 def draw_guided(guide, h, mu_s, up, sun, state):
     """Direction drawn by the guide's radiance at the nearest of its altitudes and suns."""
     cells = guide.cells[round(_altitude_place(guide, h)), round(_sun_place(mu_s))]
@@ -215,7 +215,7 @@ def draw_guided(guide, h, mu_s, up, sun, state):
     return x * norm, y * norm, z * norm
 
 
-@kernel
+@shared_kernel
 def guided_density(guide, h, mu_s, up, sun, direction):
     """Density per solid angle with which `draw_guided` draws `direction`."""
     cells = guide.cells[round(_altitude_place(guide, h)), round(_sun_place(mu_s))]
@@ -231,7 +231,7 @@ def guided_density(guide, h, mu_s, up, sun, direction):
     return probability / _cell_solid_angle(cell)
 
 
-@kernel
+@shared_kernel
 def _horizontal_axes(up, sun):
     """Horizontal vectors toward the sun's azimuth and 90 degrees from it."""
     mu_s = up[0] * sun[0] + up[1] * sun[1] + up[2] * sun[2]

@@ -24,7 +24,7 @@ from skybake.reference.rays import (
     transmittance_to_space,
 )
 from skybake.reference.stretches import draw_vertex, new_stretches, weigh_stretches
-from skybake.transport.kernel import kernel
+from skybake.transport.kernel import shared_kernel
 
 TOWARD_SUN = 0.3
 """Share of a path's first turns drawn around the sun: an aureole is never met by chance alone."""
@@ -36,7 +36,7 @@ SURVIVAL = 0.3
 """Paths that weigh less than this, and by the guide promise less, play Russian roulette."""
 
 
-@kernel
+@shared_kernel
 def follow(
     air, guide, sun, ray, stretches, cumulative, u, up, h, direction, first, last, scratch, state
 ):
@@ -106,7 +106,7 @@ def follow(
         order += 1
 
 
-@kernel
+@shared_kernel
 def _sunlight(air, each, total, h, mu_s, direction, sun, at_ground):
     """Sunlight that a vertex sends back along `direction`, per unit of what it scatters."""
     if at_ground:
@@ -118,7 +118,7 @@ def _sunlight(air, each, total, h, mu_s, direction, sun, at_ground):
     return toward_observer * transmittance_to_space(air, h, mu_s)
 
 
-@kernel
+@shared_kernel
 def turn(air, guide, each, total, h, up, direction, sun, at_ground, order, state):
     """Next direction of a path, drawn around the last one or around the sun, and its weight."""
     # A long path whose every turn were drawn so would multiply weights up to 1 / (1 - shares).
@@ -147,7 +147,7 @@ def turn(air, guide, each, total, h, up, direction, sun, at_ground, order, state
     return turned, wanted / density if density > 0.0 else 0.0
 
 
-@kernel
+@shared_kernel
 def mean_radiance(air, guide, sun, h, direction, first, last, samples, seed):
     """Mean over `samples` paths from altitude `h` under the vertical (0, 0, 1)."""
     state = np.array([seed], dtype=np.uint64)
@@ -180,7 +180,7 @@ def mean_radiance(air, guide, sun, h, direction, first, last, samples, seed):
     return total / samples
 
 
-@kernel
+@shared_kernel
 def mean_irradiance(air, guide, sun, h, facing, samples, seed):
     """Mean diffuse irradiance on a horizontal plane over `samples` paths.
 

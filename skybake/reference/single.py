@@ -16,7 +16,7 @@ from skybake.reference.rays import (
     trace,
     transmittance_to_space,
 )
-from skybake.transport.kernel import kernel
+from skybake.transport.kernel import shared_kernel
 
 LONGEST_PIECE = 1e-3
 """Of the planet's radius: 6 km on Earth, over which the sun sinks by 0.06 deg."""
@@ -24,7 +24,7 @@ LONGEST_PIECE = 1e-3
 _GAUSS = 0.5 - 0.5 / math.sqrt(3.0)
 
 
-@kernel
+@shared_kernel
 def single_radiance(air, sun, h, direction):
     """Radiance of order 1 from altitude `h` under the vertical (0, 0, 1).
 
@@ -74,7 +74,7 @@ def single_radiance(air, sun, h, direction):
     return radiance
 
 
-@kernel
+@shared_kernel
 def _source(air, ray, sun, h, direction, k, s, each):
     """Light that extinction at `s` turns toward the observer, per unit of extinction."""
     h_there = max(0.0, altitude_on_ray(air.r_bottom, ray.h_tangent, s))
@@ -87,7 +87,7 @@ def _source(air, ray, sun, h, direction, k, s, each):
     return albedo * phase * transmittance_to_space(air, h_there, dot(up, sun))
 
 
-@kernel
+@shared_kernel
 def _shadow_crossings(air, ray, sun, h, direction):
     """Where the ray meets the cylinder that the planet's shadow fills, as distances `s`."""
     r = air.r_bottom + h

@@ -9,7 +9,7 @@ import numpy as np
 from skybake.reference.directions import uniform
 from skybake.reference.guide import look_up
 from skybake.reference.rays import altitude_on_ray, place_at_depth
-from skybake.transport.kernel import kernel
+from skybake.transport.kernel import shared_kernel
 
 SEGMENTS_PER_STRETCH = 16
 
@@ -17,13 +17,13 @@ GUIDED_STRETCHES = 0.8
 """Share of a path's first vertices drawn by the guide, the others as an unguided photon's."""
 
 
-@kernel
+@shared_kernel
 def new_stretches(air):
     """Room for `weigh_stretches`."""
     return np.empty(2 * len(air.altitude) // SEGMENTS_PER_STRETCH + 4)
 
 
-@kernel
+@shared_kernel
 def weigh_stretches(air, guide, ray, h, mu_s, nu, lit, order, cumulative):
     """Give each stretch of the ray, and the ground last, a probability, as running sums.
 
@@ -78,12 +78,12 @@ def weigh_stretches(air, guide, ray, h, mu_s, nu, lit, order, cumulative):
     return count
 
 
-@kernel
+@shared_kernel
 def _mu_s_at_cut(air, ray, i, r_start, mu_s, nu):
     return (r_start * mu_s + (ray.cuts.s[i] - ray.start) * nu) / (air.r_bottom + ray.cuts.h[i])
 
 
-@kernel
+@shared_kernel
 def _promise(air, guide, ray, i, r_start, mu_s, nu, lit):
     h = ray.cuts.h[i]
     mu_s_there = _mu_s_at_cut(air, ray, i, r_start, mu_s, nu)
@@ -93,7 +93,7 @@ def _promise(air, guide, ray, i, r_start, mu_s, nu, lit):
     return light
 
 
-@kernel
+@shared_kernel
 def draw_vertex(air, ray, stretches, cumulative, u, state):
     """Where the ray scatters or meets the ground, and the weight of having drawn that.
 

@@ -36,13 +36,18 @@ FAST_MATH = {"nsz", "arcp", "contract", "afn", "reassoc"}
 
 
 def kernel(function: Callable[..., Any]) -> Any:
-    """Compile `function` on first call, without the GIL, kept on disk.
+    """Compile `function` on first call by Python, without the GIL, kept on disk.
 
     Kernels are serial and take a range of rows; `run_rows` gives each thread
     its ranges. Measured against ``parallel=True`` this halves the compile time
     and saves milliseconds a call, and the result has the same bits for any
-    number of threads. Other kernels cannot call it, see `inner_kernel`.
+    number of threads. No other kernel may call it: the file has no code to link to.
     """
+    return _compile_later(function, is_linked=False)
+
+
+def shared_kernel(function: Callable[..., Any]) -> Any:
+    """Compile `function` for Python and for other kernels, at the cost of slower loading."""
     return _compile_later(function)
 
 
@@ -55,13 +60,13 @@ def inner_kernel(function: Callable[..., Any]) -> Any:
     return _compile_later(function, no_cpython_wrapper=True, _nrt=False)
 
 
-def _compile_later(function: Callable[..., Any], **extra: bool) -> Any:
+def _compile_later(function: Callable[..., Any], *, is_linked: bool = True, **extra: bool) -> Any:
     options: dict[str, Any] = {"nogil": True, "fastmath": FAST_MATH, "error_model": "numpy"}
     options |= {"no_cfunc_wrapper": True, **extra}
     dispatcher: Any = numba.njit(**options)(function)
     directory = cache_directory()
     if directory is not None:
-        dispatcher._cache = _KernelCache(function, directory)
+        dispatcher._cache = _KernelCache(function, directory, is_linked=is_linked)
     return dispatcher
 
 
@@ -73,9 +78,10 @@ class _KernelCache(_Cache):
     scipy where it is installed) before it looks whether a kernel is compiled already.
     """
 
-    def __init__(self, function: Callable[..., Any], directory: Path) -> None:
+    def __init__(self, function: Callable[..., Any], directory: Path, *, is_linked: bool) -> None:
         self._function = function
         self._directory = directory
+        self._is_linked = is_linked
 
     @property
     def cache_path(self) -> str:
@@ -98,7 +104,8 @@ class _KernelCache(_Cache):
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep a compiled kernel; where that fails it serves this process only."""
         try:
-            write_sealed(self._path(sig, data.codegen), dumps(_reduced(data)))
+            parts = data._reduce() if self._is_linked else _unlinked(data)
+            write_sealed(self._path(sig, data.codegen), dumps(parts))
         except OSError:
             warn_of_full_disk(self._directory)
 
@@ -119,22 +126,17 @@ class _KernelCache(_Cache):
         return self._directory / f"{name}-{digest}{KERNEL_SUFFIX}"
 
 
-def _reduced(compiled: Any) -> tuple[Any, ...]:
-    """Parts of a compiled kernel that a file keeps.
+def _unlinked(compiled: Any) -> tuple[Any, ...]:
+    """Parts of a compiled kernel without what another would be linked to.
 
-    Of a kernel that Python calls these are its machine code and its name. The code that
-    other kernels would be linked to, and the environments of what was compiled into it
-    (numba's own array functions, whose modules would be imported), take longer to load.
+    That code, and the environments of what was compiled into it (numba's own array
+    functions, whose modules would be imported), take ten times as long to load as the
+    machine code. What is loaded must still name the function.
     """
-    (name, kind, code), descriptor, *others, _ = compiled._reduce()
-    if kind != "object" or not compiled.library.codegen._engine.is_symbol_defined(
-        descriptor.llvm_cpython_wrapper_name
-    ):
-        whole: tuple[Any, ...] = compiled._reduce()
-        return whole
-    names = f'define void @"{descriptor.llvm_cpython_wrapper_name}"() {{ ret void }}'
-    stub = llvmlite.binding.parse_assembly(names).as_bitcode()
-    return (name, kind, (code[0], stub)), descriptor, *others, ()
+    (name, kind, (machine_code, _)), descriptor, *others, _ = compiled._reduce()
+    wrapper = f'define void @"{descriptor.llvm_cpython_wrapper_name}"() {{ ret void }}'
+    named = llvmlite.binding.parse_assembly(wrapper).as_bitcode()
+    return (name, kind, (machine_code, named)), descriptor, *others, ()
 
 
 class _Beside:

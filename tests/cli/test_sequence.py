@@ -66,6 +66,9 @@ USAGE = """
 --frames 1-3 --sun 10..95              => '--sun': must be from -90deg to 90deg, got 95
 --frames 1-3 --sun 10..                => '--sun': must be an angle such as 5deg
 --frames 1-3 --sun 10..20..30          => '--sun': must be an angle such as 5deg
+--frames 1-3 --sun 5deg...10deg        => '--sun': must have two dots between two values, got 5deg
+--frames 1-3 --altitude 5..10km        => '--altitude': must have a unit on both sides, got 5..10km
+--frames 1-3 --sun 0.1..0.5rad         => '--sun': must have a unit on both sides, got 0.1..0.5rad
 --frames 1-3 --altitude 0..-1km        => '--altitude': must be at least 0m, which is the ground
 --frames 1:3                           => '--frames': must have a step as in 1-100x5, got '1:3'
 --frames 3-1                           => '--frames': a range must ascend, got '3-1'
@@ -129,6 +132,7 @@ FAILED = """
 --preset vulcan                     => unknown preset 'vulcan'
 --set dust.optical_depth=0.1..2     => --set: 'dust.optical_depth': unknown key
 --set aerosol.optical_depth=0.1..-2 => optical_depth: must be
+--set aerosol.optical_depth=0.1...2 => optical_depth: must be a number, got '0.1...2'
 --set aerosol.optical_depth=0.1..   => optical_depth: must be a number, got '0.1..'
 -o absent/a.#.exr                   => absent/a.0001.exr: folder must exist, got
 --preview absent/a.#.png            => absent/a.0001.png: folder must exist, got
@@ -173,7 +177,7 @@ def test_a_faulty_exposure_curve_is_one_line(folder, content, message):
 
 def test_a_range_goes_evenly_and_exactly_from_the_first_frame_to_the_last():
     frames = plan(
-        *("--sun", "-6deg..90deg", "--sun-azimuth", "350..370", "--altitude", "0m..400km"),
+        *("--sun", "-6..90deg", "--sun-azimuth", "350..370", "--altitude", "0..400km"),
         *("--frames", "1-5,9"),
     )
     assert [one["frame"] for one in frames] == [1, 2, 3, 4, 5, 9]
@@ -685,3 +689,15 @@ def test_emitted_commands_of_a_part_are_of_that_part():
 def test_help_names_what_patterns_mean():
     text = " ".join(invoke("sequence", "--help").stdout.split())
     assert "#### is the frame number in four digits, as is a single #" in text
+
+
+def test_the_default_name_tells_what_was_set_of_the_world(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for changes, name in (
+        ((), "mars"),
+        (("--set", "dust.optical_depth=2"), "mars_dust.optical_depth=2"),
+        (("--set", "dust.optical_depth=0.3..2"), "mars"),
+    ):
+        result = invoke("sequence", "--preset", "mars", "--frames", "1-2", *changes, "--dry-run")
+        assert result.exit_code == 0
+        assert result.stdout.splitlines()[1].endswith(f"  {name}.0002.exr")

@@ -1,6 +1,7 @@
 """Sequences as processes: killed, interrupted, side by side, on full and on locked disks."""
 
 import os
+import pty
 import signal
 import subprocess
 import time
@@ -208,3 +209,22 @@ def test_one_worker_two_workers_and_emitted_commands_make_the_same_bytes(tmp_pat
         del made[name]["a.sequence.json"]
     assert len(made["one"]) == 8
     assert made["one"] == made["two"] == made["shell"]
+
+
+def test_a_terminal_sees_a_bar_with_the_speed(tmp_path):
+    terminal, end = pty.openpty()
+    arguments = ("-o", "a.#.exr", "--frames", "1-6", "--json")
+    process = start(*QUICK, *arguments, cwd=tmp_path, stderr=end)
+    os.close(end)
+    seen = b""
+    try:
+        while chunk := os.read(terminal, 4096):
+            seen += chunk
+    except OSError:  # the other end is closed
+        pass
+    os.close(terminal)
+    output, _ = process.communicate(timeout=60)
+    assert process.returncode == 0
+    assert output.startswith('{"baked": 6, ')
+    assert b"  6/6  " in seen
+    assert b" frames/s, " in seen

@@ -53,7 +53,7 @@ def test_cache_of_other_users_of_numba_stays_where_it_was():
 
 def decorated_functions():
     """Functions of the package that are kernels: their nodes by the kind of kernel."""
-    found = {"kernel": {}, "inner_kernel": {}}
+    found = {"kernel": {}, "inner_kernel": {}, "shared_kernel": {}}
     for path in Path(skybake.__file__).parent.rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.FunctionDef):
@@ -66,11 +66,12 @@ def decorated_functions():
 def test_kernels_that_python_calls_are_called_by_no_kernel():
     """What is kept of them on disk cannot be linked to."""
     found = decorated_functions()
-    assert len(found["kernel"]) > 10
+    assert min(map(len, found.values())) > 5
+    alone = found["kernel"].keys() - found["shared_kernel"].keys()
     for name, node in (found["kernel"] | found["inner_kernel"]).items():
         calls = {
             one.func.id
             for one in ast.walk(node)
             if isinstance(one, ast.Call) and isinstance(one.func, ast.Name)
         }
-        assert not calls & found["kernel"].keys(), name
+        assert not calls & alone, name
