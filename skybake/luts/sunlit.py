@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.luts.transmittance import fill_sun_column
-from skybake.transport.density import GAUSS_FAR, GAUSS_LOW, GAUSS_SELF
+from skybake.transport.density import GAUSS_FAR, GAUSS_LOW, GAUSS_SELF, fill_density
 from skybake.transport.exponential import fast_exp
 from skybake.transport.geometry import radius_at, shadow_interval
 from skybake.transport.kernel import inner_kernel
@@ -86,32 +86,36 @@ def gather_sunlit(medium, columns, ray, samples, first, last, length, out):
                     columns, medium.r_bottom, medium.r_top, radius, mu_s_here, out.column
                 ):
                     continue
-                # Density is taken as linear through the step's own two points, which is
-                # what their weights integrate.
-                x = (distance - start) / step
-                share = (x - GAUSS_LOW) / (1.0 - 2.0 * GAUSS_LOW)
-                bend = x * (0.5 * x - GAUSS_LOW) / (1.0 - 2.0 * GAUSS_LOW)
                 for c in range(out.column.size):
-                    low, high = samples.density[n, c], samples.density[n + 1, c]
-                    to_start = samples.column_to[n, c] - step * (
-                        GAUSS_SELF * low + GAUSS_FAR * high
-                    )
                     out.sunward[c, count] = out.column[c]
-                    out.density[c, count] = low + share * (high - low)
-                    out.backward[c, count] = to_start + step * (x * low + bend * (high - low))
+                    out.density[c, count] = samples.density[n + i, c]
+                    out.backward[c, count] = samples.column_to[n + i, c]
                 for k in range(out.weight.shape[0]):
                     out.weight[k, count] = samples.weight[n + i, k]
                 if not is_whole:
-                    _fill_weight(medium, 0.5 * (end - begin), count, out)
+                    x, width = (distance - start) / step, end - begin
+                    _fill_cut(medium, samples, n, step, x, radius, width, count, out)
                 count += 1
     return count
 
 
 @inner_kernel
-def _fill_weight(medium, length, sample, out):
-    """Write a sample's length times its transmittance to the observer."""
+def _fill_cut(medium, samples, n, step, x, radius, width, sample, out):
+    """Write a sample at the share `x` of a step that has half of `width` as its length.
+
+    For its column from the observer the density is taken as linear through the step's own
+    two points, as these do.
+    """
+    h = radius - medium.r_bottom
+    fill_density(medium.density, medium.r_bottom, medium.r_top, h, out.column)
+    bend = x * (0.5 * x - GAUSS_LOW) / (1.0 - 2.0 * GAUSS_LOW)
+    for c in range(out.column.size):
+        low, high = samples.density[n, c], samples.density[n + 1, c]
+        to_start = samples.column_to[n, c] - step * (GAUSS_SELF * low + GAUSS_FAR * high)
+        out.density[c, sample] = out.column[c]
+        out.backward[c, sample] = to_start + step * (x * low + bend * (high - low))
     for k in range(out.weight.shape[0]):
         depth = 0.0
         for c in range(out.column.size):
             depth += medium.extinction[c, k] * out.backward[c, sample]
-        out.weight[k, sample] = length * fast_exp(-depth)
+        out.weight[k, sample] = 0.5 * width * fast_exp(-depth)

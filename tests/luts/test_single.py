@@ -20,10 +20,10 @@ from tests.truth import truth_medium
 
 
 class Air:
-    def __init__(self, medium):
+    def __init__(self, medium, *shells):
         self.medium = pad_wavelengths(medium)
         self.cut = keep_peaks(self.medium)
-        self.shells = altitude_shells(self.medium)
+        self.shells = altitude_shells(self.medium, *shells)
         self.columns = build_columns(self.medium)
         self.field = empty_field(self.cut, np.zeros(1), np.linspace(0.0, math.pi, 5), 0)
 
@@ -90,3 +90,14 @@ def test_a_sun_in_the_nadir_or_zenith_gives_numbers(h, mu_s):
     assert np.isfinite(light).all()
     if mu_s < 0.0 and h < 100.0:
         assert (light == 0.0).all()
+
+
+def test_long_steps_are_cut_at_the_shadow_nearly_as_well_as_short_ones():
+    """Density falls to a third within a step of the coarser air."""
+    coarse, fine = Air(truth_medium("EARTH_A"), 17), Air(truth_medium("EARTH_A"), 193)
+    mu, azimuth = (x.ravel() for x in np.meshgrid([0.05, 0.2, 0.6, 1.0], np.linspace(0, 3, 7)))
+    mu_s = math.sin(math.radians(-9.0))
+    rays = RADIUS, mu, mu_s, cosine_to_sun(mu, mu_s, azimuth)
+    light, expected = (air.single(*rays).sum(axis=1) for air in (coarse, fine))
+    error = (light - expected) / np.maximum(expected, 0.01 * expected.max(axis=0))
+    assert math.sqrt((error**2).mean()) < 0.04
