@@ -356,7 +356,7 @@ def test_killed_at_any_moment_it_leaves_whole_files_or_none(tmp_path, way):
     assert listing(folder) == listing(whole)
 
 
-BARE = {"PATH": os.environ["PATH"], "PYTHONPATH": PACKAGES}
+HARDLY_ANY = {"PATH": os.environ["PATH"], "PYTHONPATH": PACKAGES}
 
 
 def run_bare(*arguments, cwd, **environment):
@@ -365,7 +365,7 @@ def run_bare(*arguments, cwd, **environment):
     result = subprocess.run(
         [sys.executable, "-m", "skybake", *arguments],
         cwd=cwd,
-        env={**BARE, **cache, **environment},
+        env={**HARDLY_ANY, **cache, **environment},
         capture_output=True,
         check=False,
         timeout=240,

@@ -183,7 +183,7 @@ def test_a_cluster_without_workers_is_one_line(tmp_path, scheduler):
     check_refused(tmp_path, scheduler, message, code=IMPATIENT)
 
 
-OF_ANOTHER_VERSION = f"import skybake; skybake.__version__ = '0.0.1'; {WORKER}"
+OF_ANOTHER_VERSION = f"import skybake.version; skybake.version.__version__ = '0.0.1'; {WORKER}"
 WITHOUT_SKYBAKE = f"import sys; sys.modules['skybake'] = None; {WORKER}"
 
 
