@@ -144,10 +144,13 @@ def _plot(series: dict[str, Any], path: Path) -> None:
             memory.plot(work, [point["rss"] for point in points], "d-.", color="grey")
             memory.set_ylabel("peak memory [MB]", color="grey")
             memory.set_ylim(bottom=0.0)
-        axis.set_xscale("log", base=2 if name != "pixels" else 10)
-        axis.set_yscale("log")
-        for scale in (axis.yaxis, *(() if name == "pixels" else (axis.xaxis,))):
-            scale.set_major_formatter(ScalarFormatter())
+        if name == "pixels":
+            axis.set_xscale("log")
+            axis.set_yscale("log")
+            axis.yaxis.set_major_formatter(ScalarFormatter())
+        else:
+            axis.set_xticks(work)
+            axis.set_ylim(bottom=0.0)
         axis.set_xlabel(name)
         axis.set_title(f"power {exponent(points):.2f} at the end", fontsize=10)
         axis.grid(visible=True, which="both", alpha=0.3)
