@@ -10,6 +10,8 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
+import OpenImageIO
 import pytest
 
 from skybake.formats.reader import read_image
@@ -400,3 +402,26 @@ def test_a_name_that_is_no_utf8_is_one_line(tmp_path, arguments):
     assert errors.splitlines()[-1].startswith(b"skybake: sky")
     assert b"must be UTF-8" in errors
     assert len(errors.splitlines()) <= 2
+
+
+def half_steps(path):
+    """Values of a map of halves as whole numbers, one from each half to the next."""
+    bits = OpenImageIO.ImageBuf(str(path)).get_pixels(OpenImageIO.HALF).view(np.uint16)
+    steps = bits.astype(np.int32)
+    return np.where(steps & 0x8000, -(steps & 0x7FFF), steps)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("warm")
+@pytest.mark.parametrize("processor", ["generic", "haswell"])
+def test_other_processors_make_the_same_map_but_for_the_last_bit(tmp_path, processor):
+    arguments = ("--size", "128x64", "--sun", "-3deg", "--pixel", "half")
+    render(tmp_path / "here.exr", *arguments)
+    other = {"NUMBA_CPU_NAME": processor, "NUMBA_CPU_FEATURES": ""}
+    status, _, errors = run(
+        *("render", *arguments, "-q", "-o", tmp_path / "there.exr"),
+        env={**other, "SKYBAKE_CACHE_DIR": str(tmp_path / "cache")},
+    )
+    assert status == 0, errors
+    difference = half_steps(tmp_path / "here.exr") - half_steps(tmp_path / "there.exr")
+    assert np.abs(difference).max() <= 1
