@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from skybake.luts.field import DiffuseField
 from skybake.luts.multiple import add_diffuse, group_rays
-from skybake.luts.single import add_single_scattering, add_sunlit_ground
+from skybake.luts.single import add_single_scattering
 from skybake.optics.legendre import PEAK_NODES, Truncation
 from skybake.optics.medium import Array
 from skybake.transport.kernel import run_rows
@@ -80,8 +80,7 @@ def trace_rays(
         while begin < end:
             stop = trace(cut.medium, shells, max_arc, fans.starts, begin, end, samples)
             batch = fans, begin, stop, samples
-            add_single_scattering(cut, PEAK_NODES, columns, *batch, single)
-            add_sunlit_ground(cut.medium, columns, *batch, diffuse)
+            add_single_scattering(cut, PEAK_NODES, columns, *batch, single, diffuse)
             # A field on less than two altitudes is none.
             if field.altitude.size > 1:
                 add_diffuse(field, cut.medium, *batch, diffuse)

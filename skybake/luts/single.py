@@ -13,8 +13,8 @@ from skybake.transport.kernel import inner_kernel, kernel
 
 
 @kernel
-def add_single_scattering(cut, nodes, columns, fans, begin, end, samples, out):
-    """Add the sunlight that reaches the samples of rays, before any phase function.
+def add_single_scattering(cut, nodes, columns, fans, begin, end, samples, single, ground):
+    """Add the sunlight that reaches the samples of rays and the ground at their ends.
 
     Parameters
     ----------
@@ -28,9 +28,11 @@ def add_single_scattering(cut, nodes, columns, fans, begin, end, samples, out):
         The rays.
     begin, end, samples
         Fans, and the result of `trace` for their starts, in the truncated medium.
-    out : ndarray of float64, shape (ray, channel, wavelength)
+    single : ndarray of float64, shape (ray, channel, wavelength)
         Receives, per unit irradiance, what the phase functions of the channels
         multiply; see `skybake.optics.legendre.Truncation`.
+    ground : ndarray of float32, shape (ray, wavelength)
+        Receives the radiance of the ground per unit irradiance. [sr⁻¹]
     """
     constituents, wavelengths = cut.medium.extinction.shape
     most = np.int64(SPARE)
@@ -45,6 +47,7 @@ def add_single_scattering(cut, nodes, columns, fans, begin, end, samples, out):
     )
     depth, light = np.empty(most, np.float32), np.empty(most, np.float32)
     filled = np.empty(most, np.float32)
+    through = np.empty(wavelengths)
     for fan in range(begin, end):
         first, length = samples.first[fan - begin], samples.length[fan - begin]
         last = first + samples.number[fan - begin]
@@ -56,10 +59,22 @@ def add_single_scattering(cut, nodes, columns, fans, begin, end, samples, out):
                 _fill_light(cut, k, count, lit, depth, light)
                 for c in range(constituents):
                     scattering = cut.medium.scattering[c, k]
-                    out[i, c, k] += scattering * _sum_products(count, lit.density[c], light)
+                    single[i, c, k] += scattering * _sum_products(count, lit.density[c], light)
                 if cut.peaked.size > 0:
                     _split_peak(cut, k, count, lit, depth, light, filled)
-                    _add_peak(cut, nodes, k, count, lit, light, filled, out[i])
+                    _add_peak(cut, nodes, k, count, lit, light, filled, single[i])
+            if samples.hits_ground[fan - begin]:
+                behind = samples.transmittance[fan - begin]
+                _add_ground(
+                    cut.medium,
+                    columns,
+                    fans.rays[i],
+                    length,
+                    behind,
+                    lit.column,
+                    through,
+                    ground[i],
+                )
 
 
 @inner_kernel
@@ -140,33 +155,14 @@ def _sum_ramps(count, a, b, x, low, high):
     return total
 
 
-@kernel
-def add_sunlit_ground(medium, columns, fans, begin, end, samples, out):
-    """Add the ground at the end of rays as the sun alone lights it.
-
-    Parameters
-    ----------
-    medium, columns : Medium, ndarray
-        The atmosphere and its table of `build_columns`.
-    fans, begin, end, samples
-        As for `add_single_scattering`.
-    out : ndarray of float32, shape (ray, wavelength)
-        Receives the radiance per unit irradiance. [sr⁻¹]
-    """
-    column, light = np.empty(medium.extinction.shape[0]), np.empty(out.shape[1])
-    for fan in range(begin, end):
-        at = fan - begin
-        if not samples.hits_ground[at]:
-            continue
-        for i in range(fans.first[fan], fans.first[fan + 1]):
-            r, mu_s, nu = fans.rays[i, 0], fans.rays[i, 2], fans.rays[i, 3]
-            mu_s_there = (r * mu_s + samples.length[at] * nu) / medium.r_bottom
-            if mu_s_there <= 0.0:
-                continue
-            fill_sun_column(
-                columns, medium.r_bottom, medium.r_top, medium.r_bottom, mu_s_there, column
-            )
-            fill_transmittance(medium.extinction, column, light)
-            for k in range(light.size):
-                reflected = medium.ground_albedo[k] / math.pi * mu_s_there * light[k]
-                out[i, k] += samples.transmittance[at, k] * reflected
+@inner_kernel
+def _add_ground(medium, columns, ray, length, transmittance, column, light, out):
+    """Add the ground at the end of a ray as the sun alone lights it, shape (wavelength,)."""
+    mu_s = (ray[0] * ray[2] + length * ray[3]) / medium.r_bottom
+    if mu_s <= 0.0:
+        return
+    fill_sun_column(columns, medium.r_bottom, medium.r_top, medium.r_bottom, mu_s, column)
+    fill_transmittance(medium.extinction, column, light)
+    for k in range(out.size):
+        reflected = medium.ground_albedo[k] / math.pi * mu_s * light[k]
+        out[k] += transmittance[k] * reflected

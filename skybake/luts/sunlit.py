@@ -8,8 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.luts.transmittance import fill_sun_column
-from skybake.transport.density import GAUSS_FAR, GAUSS_LOW, GAUSS_SELF, fill_density
-from skybake.transport.exponential import fast_exp
+from skybake.transport.density import GAUSS_LOW, fill_density
 from skybake.transport.geometry import radius_at, shadow_interval
 from skybake.transport.kernel import inner_kernel
 
@@ -61,6 +60,12 @@ def gather_sunlit(medium, columns, ray, samples, first, last, length, out):
     -------
     int
         How many there are.
+
+    Notes
+    -----
+    Within a step that is cut, transmittance to the observer is taken as linear: the
+    air would have to be thick for that to show, and then no light comes by the planet's
+    edge. Density may fall to a third within a step of thin air and is looked up.
     """
     r, mu, mu_s, nu = ray[0], ray[1], ray[2], ray[3]
     dark_first, dark_last = shadow_interval(r, mu, mu_s, nu, medium.r_bottom, 0.0, length)
@@ -77,45 +82,29 @@ def gather_sunlit(medium, columns, ray, samples, first, last, length, out):
                 continue
             is_whole = begin == start and end == stop
             for i in range(2):
-                distance, radius = samples.distance[n + i], samples.radius[n + i]
+                distance, radius, share = samples.distance[n + i], samples.radius[n + i], float(i)
                 if not is_whole:
                     distance = begin + (end - begin) * (GAUSS_LOW if i == 0 else 1.0 - GAUSS_LOW)
                     radius = radius_at(r, mu, distance)
+                    share = (distance - samples.distance[n]) / (step * (1.0 - 2.0 * GAUSS_LOW))
                 mu_s_here = (r * mu_s + distance * nu) / radius
                 if not fill_sun_column(
                     columns, medium.r_bottom, medium.r_top, radius, mu_s_here, out.column
                 ):
                     continue
                 for c in range(out.column.size):
+                    low, high = samples.column_to[n, c], samples.column_to[n + 1, c]
                     out.sunward[c, count] = out.column[c]
+                    out.backward[c, count] = low + share * (high - low)
                     out.density[c, count] = samples.density[n + i, c]
-                    out.backward[c, count] = samples.column_to[n + i, c]
+                scale = (end - begin) / step
                 for k in range(out.weight.shape[0]):
-                    out.weight[k, count] = samples.weight[n + i, k]
+                    low, high = samples.weight[n, k], samples.weight[n + 1, k]
+                    out.weight[k, count] = scale * (low + share * (high - low))
                 if not is_whole:
-                    x, width = (distance - start) / step, end - begin
-                    _fill_cut(medium, samples, n, step, x, radius, width, count, out)
+                    h = radius - medium.r_bottom
+                    fill_density(medium.density, medium.r_bottom, medium.r_top, h, out.column)
+                    for c in range(out.column.size):
+                        out.density[c, count] = out.column[c]
                 count += 1
     return count
-
-
-@inner_kernel
-def _fill_cut(medium, samples, n, step, x, radius, width, sample, out):
-    """Write a sample at the share `x` of a step that has half of `width` as its length.
-
-    For its column from the observer the density is taken as linear through the step's own
-    two points, as these do.
-    """
-    h = radius - medium.r_bottom
-    fill_density(medium.density, medium.r_bottom, medium.r_top, h, out.column)
-    bend = x * (0.5 * x - GAUSS_LOW) / (1.0 - 2.0 * GAUSS_LOW)
-    for c in range(out.column.size):
-        low, high = samples.density[n, c], samples.density[n + 1, c]
-        to_start = samples.column_to[n, c] - step * (GAUSS_SELF * low + GAUSS_FAR * high)
-        out.density[c, sample] = out.column[c]
-        out.backward[c, sample] = to_start + step * (x * low + bend * (high - low))
-    for k in range(out.weight.shape[0]):
-        depth = 0.0
-        for c in range(out.column.size):
-            depth += medium.extinction[c, k] * out.backward[c, sample]
-        out.weight[k, sample] = 0.5 * width * fast_exp(-depth)
