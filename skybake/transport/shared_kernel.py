@@ -19,6 +19,7 @@ from skybake.transport.cache import (
     KERNEL_SUFFIX,
     cache_directory,
     read_sealed,
+    source_hash,
     warn_of_full_disk,
     write_sealed,
 )
@@ -79,7 +80,10 @@ class _KernelCache(_Cache):
 
     def _path(self, signature: Any, codegen: Any) -> Path:
         function = self._function
-        version = f"{function.__module__} {signature!r} {codegen.magic_tuple()!r}".encode()
+        sources = source_hash("reference")
+        version = (
+            f"{function.__module__} {sources} {signature!r} {codegen.magic_tuple()!r}".encode()
+        )
         digest = hashlib.sha256(version + function.__code__.co_code).hexdigest()[:16]
         name = re.sub(r"\W+", "_", function.__name__)
         return self._directory / f"{name}-{digest}{KERNEL_SUFFIX}"

@@ -5,10 +5,12 @@ import shutil
 import subprocess
 import sys
 import time
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
 
+import skybake
 from skybake.transport import cache
 
 SCRIPT = """
@@ -124,7 +126,7 @@ def test_on_a_full_disk_kernels_run_with_one_warning(tmp_path, room):
     if subprocess.run(mount, check=False, capture_output=True).returncode:
         pytest.skip("mounting a small file system needs root")
     try:
-        folder = tmp_path / f"kernels-{cache._source_hash()}"
+        folder = tmp_path / f"kernels-{cache.source_hash(*cache.KERNEL_PACKAGES)}"
         folder.mkdir()
         (tmp_path / "ballast").write_bytes(bytes(shutil.disk_usage(tmp_path).free - room))
         result = run(tmp_path, script=LARGER + SCRIPT)
@@ -141,9 +143,28 @@ def test_edit_to_any_kernel_source_changes_the_folder(tmp_path, monkeypatch):
     folder.mkdir(parents=True)
     (folder / "kernel.py").write_text("a = 1\n")
     monkeypatch.setattr(cache, "__file__", str(folder / "kernel.py"))
-    first = cache._source_hash.__wrapped__()
+    first = cache.source_hash.__wrapped__("transport")
     (folder / "kernel.py").write_text("a = 2\n")
-    assert cache._source_hash.__wrapped__() != first
+    assert cache.source_hash.__wrapped__("transport") != first
+
+
+def test_every_package_with_kernels_counts():
+    """Those of the path tracer are named where they are kept."""
+    package = Path(skybake.__file__).parent
+    decorated = {
+        path.relative_to(package).parts[0]
+        for path in package.rglob("*.py")
+        if "\n@kernel\n" in path.read_text()
+    }
+    assert decorated <= set(cache.KERNEL_PACKAGES)
+
+
+def test_another_version_of_the_compiler_changes_the_folder(monkeypatch):
+    first = cache.source_hash.__wrapped__("transport")
+    (name,) = cache._installed("numba")
+    assert name.startswith(f"numba-{version('numba')}.")
+    monkeypatch.setattr(cache, "_installed", lambda package: [f"{package}-0.0"])
+    assert cache.source_hash.__wrapped__("transport") != first
 
 
 def only_file(folder, suffix):
