@@ -80,10 +80,8 @@ class _KernelCache(_Cache):
 
     def _path(self, signature: Any, codegen: Any) -> Path:
         function = self._function
-        sources = source_hash("reference")
-        version = (
-            f"{function.__module__} {sources} {signature!r} {codegen.magic_tuple()!r}".encode()
-        )
-        digest = hashlib.sha256(version + function.__code__.co_code).hexdigest()[:16]
+        parts = function.__module__, source_hash("reference"), signature, codegen.magic_tuple()
+        version = repr(parts).encode() + function.__code__.co_code
+        digest = hashlib.sha256(version).hexdigest()[:16]
         name = re.sub(r"\W+", "_", function.__name__)
         return self._directory / f"{name}-{digest}{KERNEL_SUFFIX}"
