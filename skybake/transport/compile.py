@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import ctypes
+import gc
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import llvmlite.binding as llvm
 import numba
 from llvmlite import ir
 from numba.core import types
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.registry import cpu_target
 
 from skybake.transport.machine_code import MachineCode
 
@@ -50,7 +55,8 @@ def compile_kernel(dispatcher: Any, symbol: str, arguments: tuple[Any, ...]) -> 
         The kernel and all that it calls.
     """
     signature = tuple(numba.typeof(argument) for argument in arguments)
-    dispatcher.compile(signature)
+    with global_compiler_lock, _without_emission(), _without_collection():
+        dispatcher.compile(signature)
     compiled = dispatcher.overloads[signature]
     module = llvm.parse_assembly(str(_entry(compiled, symbol)))
     module.link_in(compiled.library._get_module_for_linking(), preserve=True)
@@ -66,6 +72,56 @@ def compile_kernel(dispatcher: Any, symbol: str, arguments: tuple[Any, ...]) -> 
     return MachineCode(
         symbol, _RESULTS[compiled.signature.return_type], machine.emit_object(module)
     )
+
+
+@contextmanager
+def _without_emission() -> Iterator[None]:
+    """Keep numba from making machine code of each kernel that is to be linked into another.
+
+    That would take a sixth of the time, for code that nobody calls.
+    """
+    codegen = cpu_target.target_context.codegen()
+    engine = codegen._engine
+    codegen._engine = _NoEngine()
+    try:
+        yield
+    finally:
+        codegen._engine = engine
+
+
+class _NoEngine:
+    """Stands where numba has LLVM's engine, and links nothing."""
+
+    def __init__(self) -> None:
+        self._nowhere = ctypes.c_void_p()
+
+    def add_module(self, module: Any) -> None:
+        """Leave a module where it is."""
+
+    def finalize_object(self) -> None:
+        """Emit nothing."""
+
+    def is_symbol_defined(self, name: str) -> bool:  # noqa: ARG002
+        """Claim to know every name."""
+        return True
+
+    def get_function_address(self, name: str) -> int:  # noqa: ARG002
+        """Return an address that is never called: such functions have no wrapper."""
+        return ctypes.addressof(self._nowhere)
+
+    get_global_value_address = get_function_address
+
+
+@contextmanager
+def _without_collection() -> Iterator[None]:
+    """Let no garbage be collected: there is little among the many objects that numba makes."""
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
 
 
 def _entry(compiled: Any, symbol: str) -> ir.Module:
