@@ -8,7 +8,8 @@ import numpy as np
 import OpenImageIO
 
 from skybake.errors import OutputError
-from skybake.formats.compression import largest_value, parse_compression
+from skybake.formats.compression import ZIP_LEVEL, largest_value, parse_compression
+from skybake.formats.half import half_rows
 from skybake.formats.scanlines import Rows, ScanlineWriter
 from skybake.formats.spec import UNDATED, Attribute, MapSpec
 
@@ -43,6 +44,8 @@ class ExrWriter(ScanlineWriter):
     def write_rows(self, y_begin: int, y_end: int, rows: Rows) -> None:
         """Write rows `y_begin` to `y_end`, the latter excluded, shape (row, column, channel)."""
         self._check_range(rows)
+        if self._spec.pixel == "half" and rows.dtype == np.float32:
+            rows = half_rows(np.asarray(rows, np.float32))
         super().write_rows(y_begin, y_end, rows)
 
     def _check_range(self, rows: Rows) -> None:
@@ -63,6 +66,8 @@ class ExrWriter(ScanlineWriter):
 def image_spec(spec: MapSpec) -> OpenImageIO.ImageSpec:
     """Header of an OpenEXR file."""
     name, level = parse_compression(spec.compression)
+    if name == "zip" and level is None:
+        level = ZIP_LEVEL
     header = OpenImageIO.ImageSpec(spec.width, spec.height, len(spec.channels), spec.pixel)
     header.channelnames = spec.channels
     header["compression"] = name if level is None else f"{name}:{level:g}"

@@ -29,7 +29,7 @@ KERNEL_SUFFIX = ".kernel"
 TABLES_FOLDER = "atmospheres"
 TABLES_SUFFIX = ".tables"
 
-KERNEL_PACKAGES = ("optics", "transport", "luts", "sky")
+KERNEL_SOURCES = ("optics", "transport", "luts", "sky", "formats/half.py")
 _DIGEST_SIZE = hashlib.sha256().digest_size
 _PREFIX = "kernels-"
 _DAY = 86400.0
@@ -49,7 +49,7 @@ def cache_directory() -> Path | None:
     if parent is None:
         warn_of_no_cache("SKYBAKE_CACHE_DIR: kernel cache must be given without a home folder")
         return None
-    directory = parent / f"{_PREFIX}{source_hash(*KERNEL_PACKAGES)}"
+    directory = parent / f"{_PREFIX}{source_hash(*KERNEL_SOURCES)}"
     is_new = not directory.is_dir()
     try:
         directory.mkdir(0o755, parents=True, exist_ok=True)
@@ -198,17 +198,17 @@ def _is_private(directory: Path) -> bool:
 
 
 @functools.cache
-def source_hash(*packages: str) -> str:
+def source_hash(*sources: str) -> str:
     """Digest of what compiled kernels depend on beside the processor.
 
-    That is what compiles them and the sources of some of our packages, because numba
-    does not notice an edit to a kernel that another file's kernel calls (numba issue 9483).
+    That is what compiles them and some of our packages and modules, because numba does
+    not notice an edit to a kernel that another file's kernel calls (numba issue 9483).
     """
     made_by = (__version__, *_installed("numba"), *_installed("llvmlite"))
     digest = hashlib.sha256(" ".join((*made_by, sys.implementation.cache_tag)).encode())
-    for package in packages:
-        for source in sorted((Path(__file__).parent.parent / package).glob("*.py")):
-            digest.update(source.read_bytes())
+    for path in (Path(__file__).parent.parent / source for source in sources):
+        for file in sorted(path.glob("*.py")) if path.is_dir() else [path]:
+            digest.update(file.read_bytes())
     return digest.hexdigest()[:16]
 
 
