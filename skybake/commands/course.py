@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-from click.core import ParameterSource
 
 from skybake.commands import moment, place, request, world
 from skybake.errors import InputError
@@ -138,9 +137,7 @@ def _moments(context: click.Context) -> list[moment.Moment] | None:
         return None
     if options["start"] is None or options["end"] is None:
         raise click.UsageError("--from, --to: each needs the other")
-    for name, option in (("sun_elevation", "--sun"), ("sun_azimuth", "--sun-azimuth")):
-        if context.get_parameter_source(name) is not ParameterSource.DEFAULT:
-            raise click.UsageError(f"{option}: needs no --from and --to beside it")
+    moment.refuse_sun(context, "--from and --to")
     frames = options["frames"]
     if options["every"] is None and frames is None:
         raise click.UsageError("--frames: is needed, or --every")
