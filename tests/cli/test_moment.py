@@ -21,11 +21,7 @@ from tests.cli.test_faults import check_fault, table
 PARIS = ("--lat", "48.8566", "--lon", "2.3522")
 MARS = ("--preset", "mars")
 
-
-@pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
+pytestmark = pytest.mark.usefixtures("folder")
 
 
 def render(*arguments):

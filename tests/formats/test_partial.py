@@ -169,23 +169,8 @@ def test_a_file_that_cannot_grow_to_its_end_is_an_error_and_no_file(tmp_path, su
     assert listing(tmp_path) == []
 
 
-@pytest.fixture
-def small_disk(tmp_path):
-    """A file system of 1 MiB."""
-    folder = tmp_path / "disk"
-    folder.mkdir()
-    mounted = subprocess.run(
-        ["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", str(folder)],
-        check=False,
-        capture_output=True,
-    )
-    if mounted.returncode:
-        pytest.skip("mounting a small file system needs root")
-    yield folder
-    subprocess.run(["umount", str(folder)], check=True)
-
-
 @SUFFIXES
+@pytest.mark.parametrize("small_disk", ["size=1m"], indirect=True)
 @pytest.mark.parametrize("fraction", [0.1, 0.5, 0.99, 0.999])
 def test_a_full_disk_is_named_and_the_old_file_stays(small_disk, suffix, fraction):
     path = small_disk / f"a{suffix}"
