@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import OpenImageIO
 import pytest
 
 from tests.cli.runs import PACKAGES, SMALL, listing, render, run, run_on_terminal
@@ -143,24 +144,85 @@ def test_16k_needs_at_most_500_megabytes(tmp_path, suffix):
     assert int(output) * 1024 < 500e6
 
 
+def limited(megabytes, **limits):
+    """Wrapper of a process that may use so much address space."""
+    more = (f"--{name}={size << 20}" for name, size in limits.items())
+    return "prlimit", f"--as={megabytes << 20}", *more
+
+
+HEAVY = [
+    ("render", "-o", "a.exr"),
+    ("sequence", "--frames", "1-2", "-o", "a.#.exr"),
+    ("preview", "a.exr"),
+    ("probe",),
+    ("presets", "check", "earth"),
+    ("presets", "plot", "earth"),
+    ("cache", "warm"),
+]
+
+
 @pytest.mark.usefixtures("warm")
 @pytest.mark.parametrize("megabytes", [128, 400, 700])
-@pytest.mark.parametrize("command", ["render", "sequence", "preview", "probe"])
-def test_too_little_memory_is_one_line(tmp_path, command, megabytes):
-    arguments = {
-        "render": ("-o", "a.exr"),
-        "sequence": ("--frames", "1-2", "-o", "a.#.exr"),
-        "preview": ("a.exr",),
-        "probe": (),
-    }[command]
-    limit = ("prlimit", f"--as={megabytes << 20}")
-    status, output, errors = run(command, *arguments, cwd=tmp_path, wrapper=limit)
+@pytest.mark.parametrize("arguments", HEAVY, ids=" ".join)
+def test_too_little_memory_is_one_line(tmp_path, arguments, megabytes):
+    status, output, errors = run(*arguments, cwd=tmp_path, wrapper=limited(megabytes))
     assert (status, output) == (1, "")
     assert errors == (
         "skybake: memory: must be at least 1024 MB of address space, "
         f"got a limit of {megabytes} MB\n"
     )
     assert listing(tmp_path) == []
+
+
+LIGHT = [("presets", "list"), ("presets", "show", "mars", "--resolved"), ("cache", "info")]
+
+
+@pytest.mark.parametrize("arguments", LIGHT, ids=" ".join)
+def test_what_computes_nothing_needs_hardly_any_memory(arguments):
+    status, output, errors = run(*arguments, wrapper=limited(128))
+    assert (status, errors) == (0, "")
+    assert output
+
+
+def test_memory_that_ends_on_the_way_is_one_line(tmp_path):
+    large = OpenImageIO.ImageBuf(OpenImageIO.ImageSpec(8192, 4096, 3, "half"))
+    assert large.write(str(tmp_path / "a.exr"))
+    found = run("preview", "a.exr", cwd=tmp_path, wrapper=limited(1024))
+    assert found == (1, "", "skybake: memory: must be more, got a limit of 1024 MB\n")
+    assert listing(tmp_path) == ["a.exr"]
+
+
+@pytest.mark.usefixtures("warm")
+@pytest.mark.parametrize("arguments", HEAVY[:2], ids=" ".join)
+def test_threads_without_memory_for_their_stacks_are_one_line(tmp_path, arguments):
+    found = run(*arguments, "-q", cwd=tmp_path, wrapper=limited(1536, stack=2048))
+    threads = "threads: must be able to start, got too little memory or too few processes"
+    assert found == (1, "", f"skybake: {threads}\n")
+    assert listing(tmp_path) == []
+
+
+FAULTY = """
+import skybake.preset
+from skybake.cli import run
+
+def preset_names():
+    raise {fault}
+
+skybake.preset.preset_names = preset_names
+run()
+"""
+
+
+@pytest.mark.parametrize(
+    "fault", ["RuntimeError('a fault')", "ImportError('a fault')", "SystemError('a fault')"]
+)
+def test_a_fault_of_the_program_is_not_taken_for_a_lack_of_memory(fault):
+    status, output, errors = run(
+        "presets", "list", code=FAULTY.format(fault=fault), wrapper=limited(2048)
+    )
+    assert (status, output) == (1, "")
+    assert errors.startswith("Traceback")
+    assert errors.endswith("Error: a fault\n")
 
 
 HARDLY_ANY = {"PATH": os.environ["PATH"], "PYTHONPATH": PACKAGES}
