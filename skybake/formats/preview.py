@@ -155,6 +155,8 @@ def _shrink(pixels: npt.NDArray[np.float32], max_width: int) -> npt.NDArray[np.f
     height, width = pixels.shape[:2]
     if width <= max_width:
         return pixels
+    # Without memory for its copy of them the library divides by zero, which ends the process.
+    np.empty_like(pixels)
     size = OpenImageIO.ROI(0, max_width, 0, max(1, round(height * max_width / width)), 0, 1, 0, 3)
     source = OpenImageIO.ImageBuf(np.ascontiguousarray(pixels))
     smaller = OpenImageIO.ImageBufAlgo.resize(source, filtername="triangle", roi=size)
