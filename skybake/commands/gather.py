@@ -14,7 +14,7 @@ import click
 from skybake.commands.course import output_pattern
 from skybake.commands.emit import HOW, arguments
 from skybake.formats.partial import check_target
-from skybake.sequence.animation import check_animation, write_animation
+from skybake.sequence.animation import STILL_WIDTH, check_animation, write_animation
 from skybake.sequence.frame import Outcome
 from skybake.sequence.manifest import (
     FrameRecord,
@@ -24,7 +24,7 @@ from skybake.sequence.manifest import (
 )
 from skybake.sequence.plan import Frame, Plan
 from skybake.sequence.run import Result
-from skybake.sequence.sheet import check_sheet, contact_sheet
+from skybake.sequence.sheet import TILE_WIDTH, check_sheet, contact_sheet
 from skybake.sequence.usd import check_usd, write_usd
 
 
@@ -88,13 +88,13 @@ class Products:
                 write_usd(path, self._header, records)
             else:
                 write_manifest(path, self._header, records)
-        pictures = [one.thumbnail for one in outcomes if one.thumbnail is not None]
         if self._animation is not None:
-            write_animation(self._animation, pictures, self._header.fps)
+            stills = [outcome.thumbnails[STILL_WIDTH] for outcome in outcomes]
+            write_animation(self._animation, stills, self._header.fps)
         if self._sheet is not None:
-            small = [picture[::2, ::2] if self._animation else picture for picture in pictures]
+            tiles = [outcome.thumbnails[TILE_WIDTH] for outcome in outcomes]
             labels = [_label(frames[outcome.number]) for outcome in outcomes]
-            contact_sheet(self._sheet, small, labels, title=self._plan.planets[0].title)
+            contact_sheet(self._sheet, tiles, labels, title=self._plan.planets[0].title)
         return self.paths
 
 

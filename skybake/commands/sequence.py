@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from skybake.sequence.run import Result
 
 SOME_FAILED = 3
-TILE_WIDTH = 256
-ANIMATION_WIDTH = 512
 
 
 @click.command(cls=emit.RememberingCommand)
@@ -287,18 +285,20 @@ def _pool(
 
 def _look(plan: Plan, view: str, options: dict[str, Any]) -> Look:
     """How frames are shown; of a part of a sequence as all of it would be."""
+    from skybake.sequence.animation import STILL_WIDTH
     from skybake.sequence.frame import Look
     from skybake.sequence.run import common_ev
+    from skybake.sequence.sheet import TILE_WIDTH
 
     ev = options["preview_ev"] or "auto"
-    pictures = [options[name] is not None for name in ("preview", "contact_sheet", "animate")]
-    if ev == "auto" and any(pictures) and options["exposure_curve"] is None:
+    has_pictures = any(options[name] is not None for name in request.PICTURES)
+    if ev == "auto" and has_pictures and options["exposure_curve"] is None:
         ev = common_ev(plan)
-    sheet, animation = pictures[1:]
+    widths = {"contact_sheet": TILE_WIDTH, "animate": STILL_WIDTH}
     return Look(
         view=view,
         ev=ev if isinstance(ev, float) else None,
         follows_map=ev == "auto" and options["exposure_curve"] is not None,
-        thumbnail_width=ANIMATION_WIDTH if animation else TILE_WIDTH if sheet else 0,
+        thumbnail_widths=tuple(widths[name] for name in widths if options[name] is not None),
         skip_existing=options["skip_existing"],
     )

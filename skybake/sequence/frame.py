@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -41,8 +41,8 @@ class Look:
         Exposure value of pictures; None chooses one for each frame by itself.
     follows_map : bool
         Without `ev`, show maps as their own exposure has them.
-    thumbnail_width : int
-        Of the thumbnails; 0 for none. [pixel]
+    thumbnail_widths : tuple of int
+        Of the thumbnails of each frame. [pixel]
     skip_existing : bool
         Leave frames alone whose files are whole and of the same recipe.
     """
@@ -50,7 +50,7 @@ class Look:
     view: str = "aces2"
     ev: float | None = None
     follows_map: bool = False
-    thumbnail_width: int = 0
+    thumbnail_widths: tuple[int, ...] = ()
     skip_existing: bool = False
 
 
@@ -72,8 +72,8 @@ class Outcome:
         Digests of these files.
     ev : float or None
         Exposure value of its picture, if that is known.
-    thumbnail : ndarray of uint8 or None
-        Code values of sRGB, shape (row, column, 3).
+    thumbnails : mapping of int to ndarray of uint8
+        Code values of sRGB, shape (width // 2, width, 3), by their widths.
     """
 
     number: int
@@ -82,7 +82,7 @@ class Outcome:
     files: tuple[Path, ...]
     sha256: tuple[str, ...]
     ev: float | None
-    thumbnail: npt.NDArray[np.uint8] | None
+    thumbnails: Mapping[int, npt.NDArray[np.uint8]]
 
 
 def finish_frame(
@@ -138,7 +138,7 @@ def finish_frame(
         files=files,
         sha256=tuple(_sha256(path) for path in files),
         ev=work.ev if frame.preview is not None else None,
-        thumbnail=work.thumbnail() if look.thumbnail_width else None,
+        thumbnails={width: work.thumbnail(width) for width in look.thumbnail_widths},
     )
 
 
@@ -177,8 +177,8 @@ class _Work:
             return ev_from_luminance(self._frame.settings.white_luminance)
         return scene_ev(self.scene)
 
-    def thumbnail(self) -> npt.NDArray[np.uint8]:
-        return thumbnail(self.scene, self.ev, self._look.view, self._look.thumbnail_width)
+    def thumbnail(self, width: int) -> npt.NDArray[np.uint8]:
+        return thumbnail(self.scene, self.ev, self._look.view, width)
 
 
 def _sha256(path: Path) -> str:

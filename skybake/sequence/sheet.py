@@ -16,6 +16,9 @@ from skybake.formats.preview import write_picture
 
 Picture = npt.NDArray[np.uint8]
 
+TILE_WIDTH = 256
+"""Of the thumbnails that suit a sheet. [pixel]"""
+
 BACKGROUND = 24
 """Code value around the tiles: dark, so that skies are judged by themselves."""
 

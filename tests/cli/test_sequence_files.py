@@ -220,6 +220,12 @@ def test_contact_sheet_and_moving_picture_hold_all_frames():
     assert brightness.max() > 200
 
 
+def test_a_contact_sheet_is_the_same_beside_a_moving_picture():
+    sequence(*DAY, *THREE, "--contact-sheet", "a.png")
+    sequence(*DAY, *THREE, "--contact-sheet", "b.png", "--animate", "b.webp")
+    assert Path("a.png").read_bytes() == Path("b.png").read_bytes()
+
+
 def test_lines_tell_each_frame_and_the_summary_is_on_standard_output(folder):
     result = invoke("sequence", *QUICK, *DAY, *THREE, "-o", "a.#.exr", "--workers", "1")
     assert result.exit_code == 0
