@@ -7,13 +7,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from skybake.baking.light import Light, attributes_from_light, light_from_attributes
 from skybake.baking.paths import map_paths
-from skybake.baking.recipe import HASH_ATTRIBUTE, recipe_hash
+from skybake.baking.recipe import HASH_ATTRIBUTE, preview_texts, recipe_hash
 from skybake.baking.scene import Scene
 from skybake.baking.show import scene_ev, thumbnail
 from skybake.baking.write import bake_scene
@@ -107,7 +108,7 @@ def finish_frame(
         If `is_cancelled` said so; no file is left then.
     """
     work = _Work(frame, planet, look)
-    light = find_light(frame, planet) if look.skip_existing else None
+    light = work.found_light() if look.skip_existing else None
     is_new = light is None
 
     def stop_if_cancelled(_: float = 0.0) -> None:
@@ -142,23 +143,6 @@ def finish_frame(
     )
 
 
-def find_light(frame: Frame, planet: Planet) -> Light | None:
-    """Return the light of a frame whose files are whole and of its recipe, else None."""
-    if frame.preview is not None and not frame.preview.is_file():
-        return None
-    wanted = recipe_hash(planet, frame.settings)
-    light = None
-    for path in map_paths(frame.output, frame.settings):
-        try:
-            attributes = read_whole_attributes(path)
-            light = light_from_attributes(attributes)
-        except (InputError, OSError, KeyError, ValueError):
-            return None
-        if attributes.get(HASH_ATTRIBUTE) != wanted:
-            return None
-    return light
-
-
 class _Work:
     """A frame's scene, made when it is needed."""
 
@@ -177,8 +161,40 @@ class _Work:
             return ev_from_luminance(self._frame.settings.white_luminance)
         return scene_ev(self.scene)
 
+    def found_light(self) -> Light | None:
+        """Return the light of the files if they are whole and of this recipe, else None."""
+        planet, settings, preview = self._planet, self._frame.settings, self._frame.preview
+        wanted = {HASH_ATTRIBUTE: recipe_hash(planet, settings)}
+        light = None
+        for path in map_paths(self._frame.output, settings):
+            light = _light_of_file(path, wanted)
+            if light is None:
+                return None
+        if preview is not None:
+            texts = preview_texts(planet, settings, self.ev, self._look.view)
+            if _attributes_with(texts, preview) is None:
+                return None
+        return light
+
     def thumbnail(self, width: int) -> npt.NDArray[np.uint8]:
         return thumbnail(self.scene, self.ev, self._look.view, width)
+
+
+def _light_of_file(path: Path, wanted: Mapping[str, str]) -> Light | None:
+    attributes = _attributes_with(wanted, path)
+    try:
+        return None if attributes is None else light_from_attributes(attributes)
+    except (KeyError, ValueError):
+        return None
+
+
+def _attributes_with(wanted: Mapping[str, str], path: Path) -> dict[str, Any] | None:
+    """Return the attributes of a file if it is whole and says what is wanted, else None."""
+    try:
+        attributes = read_whole_attributes(path)
+    except (InputError, OSError):
+        return None
+    return attributes if wanted.items() <= attributes.items() else None
 
 
 def _sha256(path: Path) -> str:

@@ -135,6 +135,53 @@ def test_files_of_another_recipe_are_baked_again(change):
     assert told["baked"] == (2 if change[0] == "--sun" else 3)
 
 
+CHANGED_PICTURES = [
+    (("--preview-ev", "12"), 3),
+    # The frame with the highest sun is the one that all are exposed for by default.
+    (("--preview-ev", "adapt"), 2),
+    (("--view", "aces1"), 3),
+    (("--preview-ev", "auto"), 0),
+]
+
+
+@pytest.mark.parametrize(("change", "baked"), CHANGED_PICTURES, ids=str)
+def test_pictures_of_another_exposure_or_view_are_made_again(change, baked):
+    arguments = (*DAY, *THREE, "-o", "a.#.exr", "--preview")
+    sequence(*arguments)
+    told = sequence(*arguments, *change, "--skip-existing")
+    assert (told["baked"], told["skipped"]) == (baked, 3 - baked)
+    before = digests("*")
+    sequence(*arguments, *change)
+    assert digests("*") == before
+
+
+@pytest.mark.parametrize("damage", ["empty", "header only", "half"])
+def test_a_picture_that_is_not_whole_is_made_again(damage):
+    arguments = (*DAY, *THREE, "-o", "a.#.exr", "--preview")
+    sequence(*arguments)
+    before = digests("*")
+    path = Path("a.0002.png")
+    path.write_bytes(DAMAGES[damage](path.read_bytes()))
+    assert sequence(*arguments, "--skip-existing")["baked"] == 1
+    assert digests("*") == before
+
+
+def test_a_picture_of_another_frame_is_made_again():
+    arguments = (*DAY, *THREE, "-o", "a.#.exr", "--preview", "--preview-ev", "12")
+    sequence(*arguments)
+    before = digests("*")
+    Path("a.0002.png").write_bytes(Path("a.0001.png").read_bytes())
+    assert sequence(*arguments, "--skip-existing")["baked"] == 1
+    assert digests("*") == before
+
+
+def test_maps_alone_are_left_whatever_their_pictures_are():
+    arguments = (*DAY, *THREE, "-o", "a.#.exr")
+    sequence(*arguments, "--preview")
+    told = sequence(*arguments, "--skip-existing", "--contact-sheet", "s.png", "--preview-ev", "3")
+    assert told["skipped"] == 3
+
+
 def test_a_cube_of_six_files_is_skipped_as_a_whole():
     arguments = ("--projection", "cubemap", "--size", "16", *DAY, "--frames", "1-2")
     told = sequence(*arguments, "-o", "sky_{face}.####.exr")
