@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.runs import SMALL, invoke, run
+from tests.cli.runs import AS_A_USER, SMALL, run
 
 
 @pytest.fixture
@@ -54,10 +54,25 @@ def test_clear_of_nothing_is_no_fault(cold):
     assert run("cache", "clear", env=cold) == (0, "0.0 MB freed\n", "")
 
 
-def test_warm_refuses_an_unknown_preset():
-    result = invoke("cache", "warm", "--preset", "nowhere")
-    assert result.exit_code == 1
-    assert "nowhere" in result.stderr
+def test_clear_names_a_folder_that_it_cannot_remove(tmp_path, cold):
+    folder = tmp_path / "cache" / "kernels-0123"
+    folder.mkdir(parents=True)
+    (folder / "a.kernel").write_bytes(bytes(3_000_000))
+    folder.chmod(0o555)
+    status, output, errors = run("cache", "clear", env=cold, wrapper=AS_A_USER)
+    assert (status, output) == (1, "")
+    assert errors == f"skybake: {folder}: must be removable, got 3.0 MB that stay\n"
+    folder.chmod(0o755)
+
+
+@pytest.mark.parametrize("presets", [("nowhere",), ("earth", "nowhere")])
+def test_warm_refuses_an_unknown_preset_before_anything_is_compiled(tmp_path, cold, presets):
+    options = [word for preset in presets for word in ("--preset", preset)]
+    status, output, errors = run("cache", "warm", *options, env=cold)
+    assert (status, output) == (1, "")
+    assert errors.startswith("skybake: unknown preset 'nowhere'; known presets: ")
+    assert errors.count("\n") == 1
+    assert not list((tmp_path / "cache").rglob("*.*"))
 
 
 USES = [
