@@ -149,8 +149,8 @@ SOME_FAILED = 3
 @click.option(
     "--fps",
     metavar="N",
-    type=float,
-    default=24.0,
+    type=parameters.frame_rate,
+    default="24",
     show_default=True,
     help="Frames per second of the moving picture and of USD.",
 )
@@ -213,6 +213,7 @@ def sequence(**options: Any) -> None:
     started = time.perf_counter()
     context = click.get_current_context()
     request.check_together(context)
+    _check_effects(options)
     plan = course.plan_from_options(context)
     if emit.emit(context, [frame.number for frame in plan.frames]):
         return
@@ -238,6 +239,19 @@ def sequence(**options: Any) -> None:
         outcome.print_summary(result, written, seconds)
     if result.failures:
         raise click.exceptions.Exit(SOME_FAILED)
+
+
+def _check_effects(options: dict[str, Any]) -> None:
+    """Refuse options that would have no effect beside others, or spoil what they print."""
+    emits = emit.is_asked(options)
+    if options["chunk_size"] is not None and not emits:
+        raise click.UsageError("--chunk-size: needs --emit-commands or --emit-openjd")
+    if options["dry_run"] and emits:
+        raise click.UsageError("--dry-run: needs no --emit-commands or --emit-openjd beside it")
+    if options["workers"] is not None and options["dask"] is not None and not emits:
+        raise click.UsageError("--workers: needs no --dask beside it, which has workers of its own")
+    if options["as_json"] and options["style"] == "openjd":
+        raise click.UsageError("--json: needs no --progress openjd beside it, also on stdout")
 
 
 def _write_products(products: Products, result: Result) -> list[Path]:

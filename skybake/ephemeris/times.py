@@ -181,6 +181,8 @@ def _parse_event(
     offset = parse_duration(length) if sign else 0.0
     if offset > _SECONDS_OF_DAY:
         raise InputError(f"{name}: offset must be at most 24h, got {length}")
+    if not FIRST_YEAR <= day.year <= LAST_YEAR:
+        raise InputError(f"date must be in the years {FIRST_YEAR} to {LAST_YEAR}, got {day}")
     moment = event_time(name, day, place, zone or mean_solar_zone(place))
     return moment + timedelta(seconds=-offset if sign == "-" else offset)
 

@@ -59,10 +59,23 @@ P --from 2026-06-21T04:00 --to 2026-06-21T04:00 --every 1h => --to: must be afte
 --frames 1-3 --manifest a.xml          => '--manifest': a.xml: suffix must be .json or .csv or .usda
 --frames 1-3 --contact-sheet a.jpg     => '--contact-sheet': a.jpg: suffix must be .png
 --frames 1-3 --animate a.mp4           => '--animate': a.mp4: suffix must be .webp or .gif
---frames 1-3 --fps fast                => '--fps': 'fast' is not a valid float
+--frames 1-3 --fps fast                => '--fps': must be a number greater than 0 and at most 1000
+--frames 1-3 --fps nan                 => '--fps': must be a number greater than 0 and at most 1000
+--frames 1-3 --fps inf                 => '--fps': must be a number greater than 0 and at most 1000
+--frames 1-3 --fps 0                   => '--fps': must be a number greater than 0 and at most 1000
+--frames 1-3 --fps -24                 => '--fps': must be a number greater than 0 and at most 1000
+--frames 1-3 --sun-azimuth 0..1e20     => '--sun-azimuth': must be at most 1000 turns, got 1e20
 --frames 1-3 --workers 0               => '--workers': 0 is not in the range 1<=x<=256
 --frames 1-3 --retry -1                => '--retry': -1 is not in the range 0<=x<=100
 --frames 1-3 --chunk-size 0            => '--chunk-size': 0 is not in the range x>=1
+--frames 1-3 --chunk-size 3            => --chunk-size: needs --emit-commands or --emit-openjd
+--frames 1-3 --dry-run --emit-commands => --dry-run: needs no --emit-commands or --emit-openjd
+--frames 1-3 --dry-run --emit-openjd j => --dry-run: needs no --emit-commands or --emit-openjd
+--frames 1-3 --emit-openjd=            => '--emit-openjd': must name a folder, got ''
+--frames 1-3 --workers 2 --dask tcp://a:1 => --workers: needs no --dask beside it
+--frames 1-3 --json --progress openjd  => --json: needs no --progress openjd beside it
+P E --date 0001-01-01 --frames 1-3     => --from: date must be in the years 1000 to 2999, got 0001-
+P E --date 9999-12-31 --frames 1-3     => --from: date must be in the years 1000 to 2999, got 9999-
 --frames 1-3 --progress loud           => '--progress': 'loud' is not one of 'auto', 'bar', 'plain'
 --frames 1-3 --pixel half -o a.#.hdr   => --pixel: needs an .exr output
 --frames 1-3 --cube-layout cross       => --cube-layout: needs --projection cubemap
@@ -71,6 +84,7 @@ P --from 2026-06-21T04:00 --to 2026-06-21T04:00 --every 1h => --to: must be afte
 SHORT = {
     "P": PARIS,
     "D": ("--from", "2026-06-21T04:00", "--to", "2026-06-21T09:00"),
+    "E": ("--from", "sunrise", "--to", "sunset"),
 }
 
 
@@ -86,6 +100,7 @@ FAILED = """
 --set dust.optical_depth=0.1..2     => --set: 'dust.optical_depth': unknown key
 --set aerosol.optical_depth=0.1..-2 => optical_depth: must be
 --set aerosol.optical_depth=0.1...2 => optical_depth: must be a number, got '0.1...2'
+--set aerosol.optical_depth=0..1e999 => optical_depth: must be a number, got '0..1e999'
 --set aerosol.optical_depth=0.1..   => optical_depth: must be a number, got '0.1..'
 -o absent/a.#.exr                   => absent/a.0001.exr: folder must exist, got
 --preview absent/a.#.png            => absent/a.0001.png: folder must exist, got
@@ -93,7 +108,7 @@ FAILED = """
 --contact-sheet absent/a.png        => absent/a.png: folder must exist, got
 --animate absent/a.webp             => absent/a.webp: folder must exist, got
 --animate a.gif --fps 90            => a.gif: frames per second must be from 0.1 to 50, got 90
---exposure-curve absent.csv         => absent.csv: must be a CSV file that can be read, got
+--exposure-curve absent.csv         => must be a CSV file that can be read, got No such file or dir
 --projection cubemap --size 8 --manifest a.usda => a.usda: a dome light of USD needs maps of the
 --manifest a.json --manifest ./a.json => a.json: must be written once, got the file of two
 --preview a.#.png --contact-sheet a.0002.png => a.0002.png: must be written once, got the file of
@@ -110,8 +125,12 @@ def test_what_cannot_be_done_is_one_line_exit_1_and_no_file(folder, arguments, m
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ("frame,ev\n", "must hold the columns frame and ev, got no row"),
-        ("frame;ev\n1;15\n", "line 2: must hold numbers under frame and ev"),
+        ("", "must hold the columns frame and ev, got nothing"),
+        ("frame,ev\n", "must hold at least one frame and its ev, got none"),
+        ("frame;ev\n1;15\n", "must hold the columns frame and ev, got frame;ev"),
+        ("frame,ev,ev\n1,15,3\n", "must hold the columns frame and ev, got frame, ev, ev"),
+        (f"frame,ev\n1,{'1' * 200_000}\n", "must be a CSV file that can be read, got field larger"),
+        ("frame,ev\ninf,15\n", "line 2: frame must be finite, got inf"),
         ("frame,ev\n1,bright\n", "line 2: must hold numbers under frame and ev"),
         ("frame,ev\n1\n", "line 2: must hold numbers under frame and ev"),
         ("frame,ev\n1,41\n", "line 2: ev must be from -30 to 40, got 41"),
@@ -125,6 +144,14 @@ def test_a_faulty_exposure_curve_is_one_line(folder, content, message):
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
     result = invoke("sequence", *QUICK, *THREE, "--exposure-curve", "ev.csv")
     check_fault(result, 1, f"ev.csv: {message}")
+    assert listing(folder) == ["ev.csv"]
+
+
+def test_an_exposure_curve_is_not_written_over(folder):
+    Path("ev.csv").write_text("frame,ev\n1,15\n", encoding="utf-8")
+    arguments = ("--exposure-curve", "ev.csv", "--manifest", folder / "ev.csv")
+    result = invoke("sequence", *QUICK, *THREE, *arguments)
+    check_fault(result, 1, "ev.csv: must not be the exposure curve, which is read")
     assert listing(folder) == ["ev.csv"]
 
 

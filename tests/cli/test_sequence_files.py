@@ -205,6 +205,20 @@ def test_a_manifest_has_the_recipe_and_the_command():
     assert manifest["skybake"] == skybake.__version__
 
 
+def test_a_manifest_tells_of_the_world_only_what_all_frames_have():
+    changes = ("--set", "aerosol.optical_depth=0.1..0.3", "--set", "ground.albedo=0.4")
+    sequence("--sun", "30", *THREE, *changes, "-o", "a.#.exr")
+    recipe = json.loads(Path("a.sequence.json").read_text("utf-8"))["recipe"]
+    of_frame = json.loads(attributes("a.0001.exr")["skybake:recipe"])["preset"]
+    assert of_frame["set"].keys() - recipe["preset"]["set"].keys() == {
+        "constituents.aerosol.optical_depth"
+    }
+    assert recipe["preset"]["set"] == {"ground.albedo": 0.4}
+    told, whole = (one["constituents"]["aerosol"] for one in (recipe["preset"], of_frame))
+    assert whole == told | {"optical_depth": 0.1}
+    assert "--set=aerosol.optical_depth=0.1..0.3" in recipe["command"]
+
+
 def test_contact_sheet_and_moving_picture_hold_all_frames():
     from PIL import Image
 
