@@ -67,7 +67,8 @@ class Products:
             if self._curve is not None and path.resolve() == self._curve.resolve():
                 raise OutputError(f"{path}: must not be the exposure curve, which is read")
             if path.suffix.lower() == ".usda":
-                check_usd(path, self._header.projection)
+                maps = (_seen_from(path.parent, frame.output) for frame in self._plan.frames)
+                check_usd(path, self._header.projection, maps)
             else:
                 check_target(path)
         if self._sheet is not None:

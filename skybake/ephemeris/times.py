@@ -17,7 +17,7 @@ FIRST_YEAR, LAST_YEAR = 1000, 2999
 MAX_STEPS = 100_000
 """Most moments of a range; more is a slip of the pen."""
 
-_OFFSET = r"(?:Z|[+-]\d\d:\d\d(?::\d\d)?)"
+_OFFSET = r"(?:Z|[+-]\d\d:[0-5]\d(?::[0-5]\d)?)"
 _ISO = re.compile(rf"\d{{4}}-\d\d-\d\dT\d\d:\d\d(?::\d\d(?:\.\d{{1,6}})?)?({_OFFSET})?", re.ASCII)
 _EVENT = re.compile(rf"({'|'.join(EVENTS)})(?:([+-])(.+))?")
 _SECONDS_OF_DAY = 86_400.0

@@ -110,6 +110,7 @@ FAILED = """
 --animate a.gif --fps 90            => a.gif: frames per second must be from 0.1 to 50, got 90
 --exposure-curve absent.csv         => must be a CSV file that can be read, got No such file or dir
 --projection cubemap --size 8 --manifest a.usda => a.usda: a dome light of USD needs maps of the
+-o \x01.#.exr --manifest a.usda      => a.usda: USD must be able to hold a file's name, got
 --manifest a.json --manifest ./a.json => a.json: must be written once, got the file of two
 --preview a.#.png --contact-sheet a.0002.png => a.0002.png: must be written once, got the file of
 --emit-openjd absent/job            => absent/job: must be a folder, got
