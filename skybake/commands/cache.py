@@ -33,9 +33,9 @@ def info(as_json: bool) -> None:
     SKYBAKE_CACHE_DIR names another place than the user's cache folder. Folders that were not used
     for 30 days go when a new version makes its own; of atmospheres the oldest go beyond 1 GB.
     """
-    from skybake.transport.cache import cache_directory, cache_root, cache_usage
+    from skybake.transport.cache import cache_root, cache_usage, version_directory
 
-    root, present = cache_root(), cache_directory()
+    root, present = cache_root(), version_directory()
     usages = cache_usage()
     if as_json:
         versions = [_as_json(usage, is_present=usage.folder == present) for usage in usages]

@@ -45,11 +45,10 @@ def cache_directory() -> Path | None:
     folder. A folder that others can write to is not used, since a compiled kernel is
     a program.
     """
-    parent = cache_root()
-    if parent is None:
+    directory = version_directory()
+    if directory is None:
         warn_of_no_cache("SKYBAKE_CACHE_DIR: kernel cache must be given without a home folder")
         return None
-    directory = parent / f"{_PREFIX}{_source_hash()}"
     is_new = not directory.is_dir()
     try:
         directory.mkdir(0o755, parents=True, exist_ok=True)
@@ -64,7 +63,7 @@ def cache_directory() -> Path | None:
         warn_of_no_cache(f"{directory}: kernel cache must be writable for its owner only")
         return None
     if is_new:
-        _remove_unused(parent)
+        _remove_unused(directory.parent)
     with suppress(OSError):
         if time.time() - directory.stat().st_mtime > _DAY:
             os.utime(directory)
@@ -75,6 +74,12 @@ def cache_root() -> Path | None:
     """Folder that holds those of all versions; None without a home."""
     configured = os.environ.get("SKYBAKE_CACHE_DIR") or os.environ.get("NUMBA_CACHE_DIR")
     return Path(configured) if configured else _user_cache()
+
+
+def version_directory() -> Path | None:
+    """Folder of this version, be it there or not; None without a home."""
+    parent = cache_root()
+    return None if parent is None else parent / f"{_PREFIX}{_source_hash()}"
 
 
 def is_warm() -> bool:

@@ -24,9 +24,12 @@ def test_info_tells_what_each_version_has(tmp_path, cold):
     (old / "atmospheres").mkdir(parents=True)
     (old / "a.kernel").write_bytes(bytes(1000))
     (old / "atmospheres" / "b.tables").write_bytes(bytes(2_000_000))
+    _, text, _ = run("cache", "info", env=cold)
+    assert "kernels-0123: 1 kernels 0.0 MB, 1 atmospheres 2.0 MB" in text
+    assert "(this version)" not in text
     found = info(cold)
     assert found["folder"] == str(tmp_path / "cache")
-    (other,) = (version for version in found["versions"] if not version["present"])
+    (other,) = found["versions"]
     assert other == {
         "folder": str(old),
         "present": False,
@@ -35,9 +38,21 @@ def test_info_tells_what_each_version_has(tmp_path, cold):
         "atmospheres": 1,
         "atmosphere_bytes": 2_000_000,
     }
-    _, text, _ = run("cache", "info", env=cold)
-    assert "kernels-0123: 1 kernels 0.0 MB, 1 atmospheres 2.0 MB" in text
-    assert text.count("(this version)") == 1
+
+
+def test_info_makes_no_folder(tmp_path, cold):
+    assert info(cold) == {"folder": str(tmp_path / "cache"), "versions": []}
+    assert not (tmp_path / "cache").exists()
+
+
+def test_info_marks_the_folder_of_this_version(tmp_path):
+    """Of the cache that other tests have filled."""
+    assert run("render", *SMALL, "-q", "-o", tmp_path / "a.exr") == (0, "", "")
+    (present,) = (version for version in info({})["versions"] if version["present"])
+    assert present["kernels"] > 0
+    _, text, _ = run("cache", "info")
+    (line,) = (line for line in text.splitlines() if "(this version)" in line)
+    assert line.startswith(Path(present["folder"]).name)
 
 
 def test_clear_leaves_what_is_not_ours(tmp_path, cold):
