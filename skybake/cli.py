@@ -15,7 +15,7 @@ from typing import Any, NoReturn
 import click
 
 from skybake.commands.cache import cache
-from skybake.commands.memory import memory_limit
+from skybake.commands.memory import memory_text
 from skybake.commands.presets import presets
 from skybake.commands.preview import preview
 from skybake.commands.probe import probe
@@ -30,10 +30,8 @@ ENDED_BY_SIGNAL = 128
 
 _ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
 
-
-# What is raised where memory ends: by Python, by libraries that cannot be loaded or that
-# hand on no reason, and by threads that cannot start.
-_OUT_OF_MEMORY = (MemoryError, ImportError, SystemError, RuntimeError)
+# What Python says, as a RuntimeError, where a thread gets no stack or may not be.
+_NO_THREAD = "can't start new thread"
 
 
 class _EndedError(BaseException):
@@ -69,10 +67,13 @@ class _CommandLine(click.Group):
                 status, told_to_end = _fail("interrupted", INTERRUPTED), True
             except _EndedError as error:
                 status, told_to_end = _fail("terminated", ENDED_BY_SIGNAL + error.args[0]), True
-            except _OUT_OF_MEMORY as error:
-                if not _is_short_of_memory(error):
+            except MemoryError:
+                status = _fail(f"memory: must be more, got {memory_text()}", FAILED)
+            except RuntimeError as error:
+                if str(error) != _NO_THREAD:
                     raise
-                status = _fail(f"must have more memory, got {_memory_text()}", FAILED)
+                limits = "too little memory or too few processes"
+                status = _fail(f"threads: must be able to start, got {limits}", FAILED)
             except OSError as error:
                 # What knows a file names it; this is a full disk below standard output.
                 status = _fail(f"must be able to write, got {error.strerror or error}", FAILED)
@@ -80,16 +81,6 @@ class _CommandLine(click.Group):
             # Only now is the exception gone, and with it what it kept from its clean-up.
             _exit_now(status)
         sys.exit(status or 0)
-
-
-def _is_short_of_memory(error: Exception) -> bool:
-    """Whether memory is what was missing; under a limit libraries fail in many ways."""
-    return isinstance(error, MemoryError) or memory_limit() is not None
-
-
-def _memory_text() -> str:
-    limit = memory_limit()
-    return "too little" if limit is None else f"a limit of {limit / 1e6:.0f} MB"
 
 
 @contextmanager

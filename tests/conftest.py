@@ -1,9 +1,11 @@
 """Settings of all tests."""
 
 import os
+import subprocess
 import tempfile
 from pathlib import Path
 
+import pytest
 from hypothesis import settings
 
 # One folder of kernels for all processes of all runs, apart from the user's own.
@@ -20,3 +22,16 @@ def pytest_addoption(parser):
     parser.addoption(
         "--update-goldens", action="store_true", help="write the maps of tests/goldens anew"
     )
+
+
+@pytest.fixture
+def small_disk(tmp_path, request):
+    """A file system of 64 KiB, or as an indirect parameter says to ``mount -o``."""
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    options = getattr(request, "param", "size=64k")
+    mount = ["mount", "-t", "tmpfs", "-o", options, "tmpfs", disk]
+    if subprocess.run(mount, check=False, capture_output=True).returncode:
+        pytest.skip("mounting a small file system needs root")
+    yield disk
+    subprocess.run(["umount", disk], check=True)

@@ -46,9 +46,18 @@ def read_directions(where: str, lines: Iterable[str]) -> Directions:
     Raises
     ------
     InputError
-        If a column is missing, or a value is no number or not a zenith angle.
+        If it is no CSV, a column is missing, or a value is no number or no zenith angle.
     """
     rows = csv.DictReader(lines)
+    try:
+        return _read_rows(where, rows)
+    except csv.Error as error:
+        # The reader counts the lines of the rows that it has returned.
+        line = rows.line_num + 1
+        raise InputError(f"{where}: line {line}: must be CSV, got {error}") from error
+
+
+def _read_rows(where: str, rows: csv.DictReader[str]) -> Directions:
     found = [name.strip() for name in rows.fieldnames or ()]
     missing = [name for name in COLUMNS if name not in found]
     if missing:

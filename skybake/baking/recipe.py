@@ -32,3 +32,15 @@ def recipe_attributes(planet: Planet, settings: MapSettings) -> dict[str, Attrib
         "skybake:recipe": json.dumps(map_recipe(planet, settings)),
         HASH_ATTRIBUTE: recipe_hash(planet, settings),
     }
+
+
+def preview_texts(planet: Planet, settings: MapSettings, ev: float, view: str) -> dict[str, str]:
+    """Return what the preview of a map says of itself, in PNG's only type.
+
+    The exposure value is rounded to what no eye and no eight bits tell apart.
+    """
+    return {
+        HASH_ATTRIBUTE: recipe_hash(planet, settings),
+        "skybake:exposureValue": f"{ev:.4f}",
+        "skybake:view": view,
+    }

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
@@ -16,7 +17,7 @@ from skybake.baking.light import Light, attributes_from_light, light_of_scene
 from skybake.baking.panel import ColumnPanel, CrossPanel, EquirectPanel, FacePanel, Panel, Pixels
 from skybake.baking.paths import default_path, map_paths
 from skybake.baking.preview import SURVEY_ROWS
-from skybake.baking.recipe import recipe_attributes
+from skybake.baking.recipe import preview_texts, recipe_attributes
 from skybake.baking.scene import Scene
 from skybake.baking.settings import MapSettings
 from skybake.baking.show import scene_ev, show_scene
@@ -183,12 +184,16 @@ def bake_scene(
     }
     with ExitStack() as stack:
         # Everything is written before anything takes its name: all files appear, or none.
-        show = preview and stack.enter_context(open_preview(preview, view=preview_view))
+        draw = None
+        if preview is not None:
+            preview_ev = scene_ev(scene) if preview_ev is None else preview_ev
+            texts = preview_texts(planet, settings, preview_ev, preview_view)
+            show = stack.enter_context(open_preview(preview, view=preview_view, texts=texts))
+            draw = partial(show_scene, scene, show, preview_ev)
         writers = stack.enter_context(open_maps(specs))
         _write(panels, writers, progress)
-        if show:
-            preview_ev = scene_ev(scene) if preview_ev is None else preview_ev
-            show_scene(scene, show, preview_ev)
+        if draw is not None:
+            draw()
     return Baked(
         **vars(light),
         files=paths,

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import json
 import time
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from skybake.commands.memory import check_memory
 from skybake.commands.report import notice
+from skybake.errors import OutputError
+
+if TYPE_CHECKING:
+    from skybake.transport.cache import Usage
 
 _MEGABYTE = 1e6
 
@@ -28,9 +33,9 @@ def info(as_json: bool) -> None:
     SKYBAKE_CACHE_DIR names another place than the user's cache folder. Folders that were not used
     for 30 days go when a new version makes its own; of atmospheres the oldest go beyond 1 GB.
     """
-    from skybake.transport.cache import cache_directory, cache_root, cache_usage
+    from skybake.transport.cache import cache_root, cache_usage, version_directory
 
-    root, present = cache_root(), cache_directory()
+    root, present = cache_root(), version_directory()
     usages = cache_usage()
     if as_json:
         versions = [_as_json(usage, is_present=usage.folder == present) for usage in usages]
@@ -54,9 +59,12 @@ def clear() -> None:
     """
     from skybake.transport.cache import cache_usage, clear_cache
 
-    freed = sum(usage.kernel_bytes + usage.table_bytes for usage in cache_usage())
+    before = cache_usage()
     clear_cache()
-    click.echo(f"{freed / _MEGABYTE:.1f} MB freed")
+    left = cache_usage()
+    if left:
+        raise OutputError(f"{left[0].folder}: must be removable, got {_size(left)} that stay")
+    click.echo(f"{_size(before)} freed")
 
 
 @cache.command()
@@ -81,17 +89,30 @@ def warm(presets: tuple[str, ...], quiet: bool) -> None:
     check_memory()
     started = time.perf_counter()
     say = _silent if quiet else notice
-    say("compiling kernels")
+
+    from skybake.transport.cache import check_cache
+
+    check_cache()
 
     from skybake.baking.warm import compile_all, solve
+    from skybake.preset import load_preset
 
+    # A fault of the last one shall be told before the first is solved.
+    for preset in presets:
+        load_preset(preset)
+    say("compiling kernels")
     solve(presets, say)
     compile_all()
     if not quiet:
         click.echo(f"warm; {time.perf_counter() - started:.1f} s")
 
 
-def _as_json(usage: Any, *, is_present: bool) -> dict[str, Any]:
+def _size(usages: Sequence[Usage]) -> str:
+    total = sum(usage.kernel_bytes + usage.table_bytes for usage in usages)
+    return f"{total / _MEGABYTE:.1f} MB"
+
+
+def _as_json(usage: Usage, *, is_present: bool) -> dict[str, Any]:
     return {
         "folder": _text(usage.folder),
         "present": is_present,

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-from click.core import ParameterSource
 
 from skybake.commands import moment, place, request, world
 from skybake.errors import InputError
@@ -138,9 +137,7 @@ def _moments(context: click.Context) -> list[moment.Moment] | None:
         return None
     if options["start"] is None or options["end"] is None:
         raise click.UsageError("--from, --to: each needs the other")
-    for name, option in (("sun_elevation", "--sun"), ("sun_azimuth", "--sun-azimuth")):
-        if context.get_parameter_source(name) is not ParameterSource.DEFAULT:
-            raise click.UsageError(f"{option}: needs no --from and --to beside it")
+    moment.refuse_sun(context, "--from and --to")
     frames = options["frames"]
     if options["every"] is None and frames is None:
         raise click.UsageError("--frames: is needed, or --every")
@@ -200,7 +197,10 @@ def _planets(options: dict[str, Any], along: Sequence[float]) -> tuple[Planet, .
 
 def _ramp(value: Any) -> Ramp | None:
     found = _RANGE.fullmatch(value) if isinstance(value, str) else None
-    return None if found is None else Ramp(float(found[1]), float(found[2]))
+    if found is None:
+        return None
+    first, last = float(found[1]), float(found[2])
+    return Ramp(first, last) if math.isfinite(first) and math.isfinite(last) else None
 
 
 def _plain(number: float) -> float:
@@ -215,24 +215,31 @@ def _exposure_curve(options: dict[str, Any]) -> list[tuple[float, float]] | None
         return None
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
-            rows = list(csv.DictReader(file))
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: must be a CSV file that can be read, got {error}") from error
+            reader = csv.DictReader(file)
+            columns, rows = list(reader.fieldnames or ()), list(reader)
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"{path}: must be a CSV file that can be read, got {reason}") from error
+    if columns.count("frame") != 1 or columns.count("ev") != 1:
+        found = ", ".join(columns) or "nothing"
+        raise InputError(f"{path}: must hold the columns frame and ev, got {found}")
     curve: list[tuple[float, float]] = []
     for line, row in enumerate(rows, start=2):
         try:
             point = float(row["frame"]), float(row["ev"])
-        except (KeyError, TypeError, ValueError) as error:
+        except (TypeError, ValueError) as error:
             raise InputError(
                 f"{path}: line {line}: must hold numbers under frame and ev, got {dict(row)}"
             ) from error
-        if not (math.isfinite(point[0]) and -30.0 <= point[1] <= 40.0):
+        if not math.isfinite(point[0]):
+            raise InputError(f"{path}: line {line}: frame must be finite, got {point[0]:g}")
+        if not -30.0 <= point[1] <= 40.0:
             raise InputError(f"{path}: line {line}: ev must be from -30 to 40, got {point[1]:g}")
         if curve and point[0] <= curve[-1][0]:
             raise InputError(f"{path}: line {line}: frames must ascend, got {point[0]:g}")
         curve.append(point)
     if not curve:
-        raise InputError(f"{path}: must hold the columns frame and ev, got no row")
+        raise InputError(f"{path}: must hold at least one frame and its ev, got none")
     return curve
 
 

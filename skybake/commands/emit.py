@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
+from skybake.commands import parameters
 from skybake.commands.world import read_value
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -36,6 +37,9 @@ class RememberingCommand(click.Command):
         return super().parse_args(ctx, args)
 
 
+_CHUNK = 10
+
+
 def emit_options(command: Command) -> Command:
     """Add the options that emit commands."""
     for option in reversed(_OPTIONS):
@@ -52,18 +56,22 @@ _OPTIONS = (
     click.option(
         "--emit-openjd",
         metavar="FOLDER",
-        type=click.Path(path_type=Path),
+        type=parameters.folder,
         help="Write an Open Job Description with a task for each chunk, and bake none.",
     ),
     click.option(
         "--chunk-size",
         metavar="N",
         type=click.IntRange(min=1),
-        default=10,
-        show_default=True,
+        show_default=str(_CHUNK),
         help="Frames of a chunk.",
     ),
 )
+
+
+def is_asked(options: Mapping[str, Any]) -> bool:
+    """Whether the options ask for commands."""
+    return options["emit_commands"] or options["emit_openjd"] is not None
 
 
 def emit(context: click.Context, numbers: Sequence[int]) -> bool:
@@ -75,20 +83,19 @@ def emit(context: click.Context, numbers: Sequence[int]) -> bool:
         If a format cannot hold them, or a file cannot be written.
     """
     options = context.params
-    if not options["emit_commands"] and options["emit_openjd"] is None:
+    if not is_asked(options):
         return False
 
     from skybake.sequence import farm, frames
 
     if options["only"] is not None:
         numbers = [number for number in numbers if number in set(options["only"])]
-    given = arguments(context)
-    lines = farm.commands(given, frames.chunks(numbers, options["chunk_size"]))
+    given, size = arguments(context), options["chunk_size"] or _CHUNK
+    lines = farm.commands(given, frames.chunks(numbers, size))
     if options["emit_openjd"] is not None:
         name = options["output"].name
         words = [*given, "--progress=openjd"]
-        size, folder = options["chunk_size"], options["emit_openjd"]
-        template = farm.write_openjd(folder, words, numbers, size, name)
+        template = farm.write_openjd(options["emit_openjd"], words, numbers, size, name)
         if not options["emit_commands"]:
             lines = [str(template)]
     for line in lines:

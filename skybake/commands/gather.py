@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
 from typing import Any
@@ -13,8 +13,9 @@ import click
 
 from skybake.commands.course import output_pattern
 from skybake.commands.emit import HOW, arguments
+from skybake.errors import OutputError
 from skybake.formats.partial import check_target
-from skybake.sequence.animation import check_animation, write_animation
+from skybake.sequence.animation import STILL_WIDTH, check_animation, write_animation
 from skybake.sequence.frame import Outcome
 from skybake.sequence.manifest import (
     FrameRecord,
@@ -24,7 +25,7 @@ from skybake.sequence.manifest import (
 )
 from skybake.sequence.plan import Frame, Plan
 from skybake.sequence.run import Result
-from skybake.sequence.sheet import check_sheet, contact_sheet
+from skybake.sequence.sheet import TILE_WIDTH, check_sheet, contact_sheet
 from skybake.sequence.usd import check_usd, write_usd
 
 
@@ -45,6 +46,7 @@ class Products:
         self._manifests = list(options["manifests"]) or _default_manifests(plan, options)
         self._sheet: Path | None = options["contact_sheet"]
         self._animation: Path | None = options["animate"]
+        self._curve: Path | None = options["exposure_curve"]
         self._header = _header(plan, options["fps"], arguments(context, HOW))
 
     @property
@@ -62,8 +64,11 @@ class Products:
             If one cannot be written.
         """
         for path in self._manifests:
+            if self._curve is not None and path.resolve() == self._curve.resolve():
+                raise OutputError(f"{path}: must not be the exposure curve, which is read")
             if path.suffix.lower() == ".usda":
-                check_usd(path, self._header.projection)
+                maps = (_seen_from(path.parent, frame.output) for frame in self._plan.frames)
+                check_usd(path, self._header.projection, maps)
             else:
                 check_target(path)
         if self._sheet is not None:
@@ -88,13 +93,13 @@ class Products:
                 write_usd(path, self._header, records)
             else:
                 write_manifest(path, self._header, records)
-        pictures = [one.thumbnail for one in outcomes if one.thumbnail is not None]
         if self._animation is not None:
-            write_animation(self._animation, pictures, self._header.fps)
+            stills = [outcome.thumbnails[STILL_WIDTH] for outcome in outcomes]
+            write_animation(self._animation, stills, self._header.fps)
         if self._sheet is not None:
-            small = [picture[::2, ::2] if self._animation else picture for picture in pictures]
+            tiles = [outcome.thumbnails[TILE_WIDTH] for outcome in outcomes]
             labels = [_label(frames[outcome.number]) for outcome in outcomes]
-            contact_sheet(self._sheet, small, labels, title=self._plan.planets[0].title)
+            contact_sheet(self._sheet, tiles, labels, title=self._plan.planets[0].title)
         return self.paths
 
 
@@ -110,21 +115,31 @@ def _default_manifests(plan: Plan, options: Mapping[str, Any]) -> list[Path]:
 
 def _header(plan: Plan, fps: float, command: list[str]) -> SequenceHeader:
     planet, settings = plan.planets[0], plan.frames[0].settings
-    recipes = [frame.settings.recipe() for frame in plan.frames]
-    common = {
-        key: value
-        for key, value in recipes[0].items()
-        if all(recipe[key] == value for recipe in recipes)
-    }
+    maps = [frame.settings.recipe() for frame in plan.frames]
+    worlds = [planet.recipe for planet in plan.planets]
     return SequenceHeader(
         preset=planet.name,
         projection=settings.projection,
         colorspace=settings.colorspace,
         sun_disc=settings.sun_disc,
         sun_angular_diameter_deg=math.degrees(2.0 * planet.star.angular_radius),
-        recipe={"map": common, "preset": planet.recipe, "command": command},
+        recipe={"map": _common(maps), "preset": _common(worlds), "command": command},
         fps=fps,
     )
+
+
+def _common(recipes: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """Return what recipes have in common, tables in tables too."""
+    first, *others = recipes
+    common = {}
+    for key, value in first.items():
+        values = [other.get(key) for other in others]
+        tables = [table for table in (value, *values) if isinstance(table, Mapping)]
+        if all(other == value for other in values):
+            common[key] = value
+        elif len(tables) == len(recipes):
+            common[key] = _common(tables)
+    return common
 
 
 def _record(frame: Frame, outcome: Outcome, folder: Path) -> FrameRecord:

@@ -21,6 +21,12 @@ def memory_limit() -> int | None:
     return None if limit == resource.RLIM_INFINITY else limit
 
 
+def memory_text() -> str:
+    """Say of how much memory it was too little."""
+    limit = memory_limit()
+    return "too little memory" if limit is None else f"a limit of {limit >> 20} MB"
+
+
 def check_memory() -> None:
     """Refuse to start what would be aborted on its way.
 
@@ -32,6 +38,5 @@ def check_memory() -> None:
     limit = memory_limit()
     if limit is not None and limit < LEAST:
         raise InputError(
-            f"memory: must be at least {LEAST >> 20} MB of address space, "
-            f"got a limit of {limit >> 20} MB"
+            f"memory: must be at least {LEAST >> 20} MB of address space, got {memory_text()}"
         )

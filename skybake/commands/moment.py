@@ -67,10 +67,21 @@ def moment(context: click.Context) -> Moment | None:
     if options["time"] is None:
         refuse_places(options, "--time")
         return None
+    refuse_sun(context, "--time")
+    return _resolve(options, {"--time": options["time"]}, lambda start, _: [start])[0]
+
+
+def refuse_sun(context: click.Context, time: str) -> None:
+    """Refuse a sun by angles where `time`, the option or options of a time, puts it.
+
+    Raises
+    ------
+    click.UsageError
+        That names both.
+    """
     for name, option in (("sun_elevation", "--sun"), ("sun_azimuth", "--sun-azimuth")):
         if context.get_parameter_source(name) is not ParameterSource.DEFAULT:
-            raise click.UsageError(f"{option}: needs no --time beside it")
-    return _resolve(options, {"--time": options["time"]}, lambda start, _: [start])[0]
+            raise click.UsageError(f"{option}: needs no {time} beside it")
 
 
 def moments(options: Mapping[str, Any], count: int | None) -> list[Moment]:

@@ -35,6 +35,9 @@ Paths = TypeVar("Paths", Path | None, tuple[Path, ...])
 # The tolerance is for 5400arcmin, which is 90deg but for the last bit.
 _RIGHT_ANGLE = math.pi / 2 + 1e-9
 
+_MOST_TURNS = 1000
+_FASTEST = 1000.0
+
 # Click shows text and path of a click.BadParameter, but of a ValueError only the value.
 
 
@@ -47,8 +50,11 @@ def elevation(text: str) -> float:
 
 
 def bearing(text: str) -> float:
-    """Read an angle. [rad]"""
-    return _parse(text, parse_angle)
+    """Read an angle of up to a thousand turns; many more would leave no digits to it. [rad]"""
+    angle = _parse(text, parse_angle)
+    if abs(angle) > 4 * _RIGHT_ANGLE * _MOST_TURNS:
+        raise click.BadParameter(f"must be at most {_MOST_TURNS} turns, got {text}")
+    return angle
 
 
 def latitude(text: str) -> float:
@@ -126,6 +132,19 @@ def sequence_exposure(text: str) -> float | str:
     return "auto" if number is None else number
 
 
+def frame_rate(text: str) -> float:
+    """Read frames per second, greater than 0."""
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not 0.0 < number <= _FASTEST:
+        raise click.BadParameter(
+            f"must be a number greater than 0 and at most {_FASTEST:g}, got {text!r}"
+        )
+    return number
+
+
 def ramp(read: Callable[[str], float]) -> Callable[[str], Ramp]:
     """Return what reads a value, or two with ``..`` between."""
 
@@ -157,6 +176,13 @@ def duration(text: str) -> float:
     if not seconds > 0.0:
         raise click.BadParameter(f"must be greater than 0s, got {text}")
     return seconds
+
+
+def folder(text: str) -> Path:
+    """Read the path of a folder."""
+    if not text:
+        raise click.BadParameter("must name a folder, got ''")
+    return Path(text)
 
 
 def with_suffix(

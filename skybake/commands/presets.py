@@ -7,6 +7,7 @@ from typing import Any
 
 import click
 
+from skybake.commands.memory import check_memory
 from skybake.commands.parameters import with_suffix
 from skybake.commands.world import change_options, is_changed, load_world, world_overrides
 from skybake.errors import InputError, OutputError, PresetError
@@ -69,6 +70,7 @@ def check(name: str, **options: Any) -> None:
       skybake presets check own.toml
       skybake presets check earth --visibility 5km
     """
+    check_memory()
     try:
         planet = load_world(name, options)
 
@@ -136,6 +138,7 @@ def plot(name: str, output: Path | None, **options: Any) -> None:
       skybake presets plot mars
       skybake presets plot earth --set aerosol.optical_depth=0.3 -o haze.png
     """
+    check_memory()
     planet = load_world(name, options)
     try:
         from skybake.baking.paths import world_name

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 BESIDE = Path("beside-the-map.png")
 """Stands for the default name of a preview."""
 
-_PICTURES = ("preview", "contact_sheet", "animate")
+PICTURES = ("preview", "contact_sheet", "animate")
+"""Options that ask for pictures to look at."""
 
 EQUIRECT_WIDTH = 2048
 CUBEMAP_EDGE = 1024
@@ -31,7 +32,7 @@ def check_together(context: click.Context) -> None:
     """
     options = context.params
     is_radiance = options["output"] is not None and options["output"].suffix.lower() == ".hdr"
-    shown = [name for name in _PICTURES if name in options]
+    shown = [name for name in PICTURES if name in options]
     has_pictures = any(options[name] is not None for name in shown)
     pictures = " or ".join(f"--{name.replace('_', '-')}" for name in shown)
     needs = {

@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
-import json
 import time
-from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from skybake.commands import course, emit, maps, parameters, progress, report, request, world
+from skybake.commands import (
+    course,
+    emit,
+    maps,
+    outcome,
+    parameters,
+    progress,
+    report,
+    request,
+    world,
+)
 from skybake.commands.memory import check_memory
 from skybake.commands.place import place_options
 from skybake.errors import SkybakeError
@@ -19,11 +28,10 @@ if TYPE_CHECKING:
     from skybake.commands.gather import Products
     from skybake.sequence.frame import Look
     from skybake.sequence.plan import Plan
+    from skybake.sequence.pool import Run
     from skybake.sequence.run import Result
 
 SOME_FAILED = 3
-TILE_WIDTH = 256
-ANIMATION_WIDTH = 512
 
 
 @click.command(cls=emit.RememberingCommand)
@@ -141,8 +149,8 @@ ANIMATION_WIDTH = 512
 @click.option(
     "--fps",
     metavar="N",
-    type=float,
-    default=24.0,
+    type=parameters.frame_rate,
+    default="24",
     show_default=True,
     help="Frames per second of the moving picture and of USD.",
 )
@@ -205,12 +213,13 @@ def sequence(**options: Any) -> None:
     started = time.perf_counter()
     context = click.get_current_context()
     request.check_together(context)
+    _check_effects(options)
     plan = course.plan_from_options(context)
     if emit.emit(context, [frame.number for frame in plan.frames]):
         return
     part = course.part_of(plan, options["only"])
     if options["dry_run"]:
-        _print_plan(part, as_json=options["as_json"])
+        outcome.print_plan(part, as_json=options["as_json"])
         return
 
     from skybake.commands.gather import Products
@@ -221,15 +230,28 @@ def sequence(**options: Any) -> None:
     products.check()
     result = _bake(plan, part, view, options)
     if result.failures:
-        _print_failures(result, openjd=options["style"] == "openjd")
+        outcome.print_failures(result, openjd=options["style"] == "openjd")
     written = _write_products(products, result)
     seconds = time.perf_counter() - started
     if options["as_json"]:
-        click.echo(json.dumps(_summary(result, written, seconds)))
+        outcome.print_json(result, written, seconds)
     elif not options["quiet"]:
-        _print_summary(result, written, seconds)
+        outcome.print_summary(result, written, seconds)
     if result.failures:
         raise click.exceptions.Exit(SOME_FAILED)
+
+
+def _check_effects(options: dict[str, Any]) -> None:
+    """Refuse options that would have no effect beside others, or spoil what they print."""
+    emits = emit.is_asked(options)
+    if options["chunk_size"] is not None and not emits:
+        raise click.UsageError("--chunk-size: needs --emit-commands or --emit-openjd")
+    if options["dry_run"] and emits:
+        raise click.UsageError("--dry-run: needs no --emit-commands or --emit-openjd beside it")
+    if options["workers"] is not None and options["dask"] is not None and not emits:
+        raise click.UsageError("--workers: needs no --dask beside it, which has workers of its own")
+    if options["as_json"] and options["style"] == "openjd":
+        raise click.UsageError("--json: needs no --progress openjd beside it, also on stdout")
 
 
 def _write_products(products: Products, result: Result) -> list[Path]:
@@ -245,93 +267,52 @@ def _write_products(products: Products, result: Result) -> list[Path]:
 
 def _bake(plan: Plan, part: Plan, view: str, options: dict[str, Any]) -> Result:
     from skybake.baking import companion
-    from skybake.sequence.run import bake_sequence, prepare
+    from skybake.sequence.run import bake_sequence
 
-    say = None if options["quiet"] else report.notice
-    if say:
+    quiet = options["quiet"]
+    if not quiet:
         report.announce_kernels()
-    with companion.beside():
-        if options["dask"] is None:
-            prepare(part, say)
-        look = _look(plan, view, options)
-        if options["dask"] is None:
-            from skybake.sequence.pool import local_pool
+    with (
+        companion.beside(),
+        _pool(plan, part, view, options) as run,
+        progress.progress(options["style"], len(part.frames), quiet=quiet) as tell,
+    ):
+        return bake_sequence(part, run, retries=options["retry"], tell=tell)
 
-            pool = local_pool(part, look, options["workers"])
-        else:
-            from skybake.sequence.dask import dask_pool
 
-            pool = dask_pool(part, look, options["dask"])
-        style, quiet = options["style"], options["quiet"]
-        with (
-            progress.progress(style, len(part.frames), quiet=quiet) as tell,
-            pool as run,
-        ):
-            return bake_sequence(part, run, retries=options["retry"], tell=tell)
+def _pool(
+    plan: Plan, part: Plan, view: str, options: dict[str, Any]
+) -> AbstractContextManager[Run]:
+    """Return what bakes frames: workers of a cluster, or threads of this process."""
+    if options["dask"] is not None:
+        from skybake.sequence.dask import dask_pool
+
+        return dask_pool(part, _look(plan, view, options), options["dask"])
+
+    from skybake.sequence.pool import local_pool
+    from skybake.sequence.run import prepare
+
+    # First, because an exposure is found with the same tables, and without a word of them.
+    prepare(part, None if options["quiet"] else report.notice)
+    return local_pool(part, _look(plan, view, options), options["workers"])
 
 
 def _look(plan: Plan, view: str, options: dict[str, Any]) -> Look:
     """How frames are shown; of a part of a sequence as all of it would be."""
+    from skybake.sequence.animation import STILL_WIDTH
     from skybake.sequence.frame import Look
     from skybake.sequence.run import common_ev
+    from skybake.sequence.sheet import TILE_WIDTH
 
     ev = options["preview_ev"] or "auto"
-    pictures = [options[name] is not None for name in ("preview", "contact_sheet", "animate")]
-    if ev == "auto" and any(pictures) and options["exposure_curve"] is None:
+    has_pictures = any(options[name] is not None for name in request.PICTURES)
+    if ev == "auto" and has_pictures and options["exposure_curve"] is None:
         ev = common_ev(plan)
-    sheet, animation = pictures[1:]
+    widths = {"contact_sheet": TILE_WIDTH, "animate": STILL_WIDTH}
     return Look(
         view=view,
         ev=ev if isinstance(ev, float) else None,
         follows_map=ev == "auto" and options["exposure_curve"] is not None,
-        thumbnail_width=ANIMATION_WIDTH if animation else TILE_WIDTH if sheet else 0,
+        thumbnail_widths=tuple(widths[name] for name in widths if options[name] is not None),
         skip_existing=options["skip_existing"],
     )
-
-
-def _print_plan(plan: Plan, *, as_json: bool) -> None:
-    frames = plan.summary()
-    if as_json:
-        click.echo(json.dumps({"frames": frames}))
-        return
-    for frame in frames:
-        label = f"  {frame['label']}" if frame["label"] else ""
-        click.echo(
-            f"{frame['frame']}  sun {frame['sun_elevation_deg']:.2f}deg at "
-            f"{frame['sun_azimuth_deg']:.2f}deg, altitude {frame['altitude_m']:g}m"
-            f"{label}  {frame['file']}"
-        )
-
-
-def _summary(result: Result, written: Sequence[Path], seconds: float) -> dict[str, Any]:
-    """Return what ``--json`` prints, see docs/cli.md."""
-    baked = sum(outcome.is_new for outcome in result.outcomes)
-    return {
-        "baked": baked,
-        "skipped": len(result.outcomes) - baked,
-        "failed": {str(number): message for number, message in result.failures.items()},
-        "files": [str(path) for outcome in result.outcomes for path in outcome.files],
-        "written": [str(path) for path in written],
-        "seconds": round(seconds, 3),
-    }
-
-
-def _print_summary(result: Result, written: Sequence[Path], seconds: float) -> None:
-    for path in written:
-        click.echo(path)
-    baked = sum(outcome.is_new for outcome in result.outcomes)
-    skipped = len(result.outcomes) - baked
-    click.echo(
-        f"{baked} frames baked, {skipped} skipped, {len(result.failures)} failed; {seconds:.1f} s"
-    )
-
-
-def _print_failures(result: Result, *, openjd: bool) -> None:
-    from skybake.sequence.frames import format_frames
-
-    for number, message in result.failures.items():
-        report.notice(f"frame {number}: {message}")
-    line = f"frames failed: {format_frames(result.failures)}"
-    report.notice(line)
-    if openjd:
-        click.echo(f"openjd_fail: {line}")

@@ -139,15 +139,6 @@ def declination(solar_longitude: float) -> float:
     return math.asin(_SIN_OBLIQUITY * math.sin(solar_longitude))
 
 
-def planetographic_declination(solar_longitude: float) -> float:
-    """Planetographic latitude of the point below the sun, as Mars24 tells it. [rad]
-
-    It is up to 0.25 deg more than `declination`: a line from the sun to the planet's
-    centre is not vertical on an ellipsoid.
-    """
-    return declination(solar_longitude) + math.radians(0.25) * math.sin(solar_longitude)
-
-
 def planetographic_latitude(latitude: float) -> float:
     """Angle of the vertical from the plane of the equator, of a planetocentric latitude. [rad]"""
     squared = (_POLAR_RADIUS / _EQUATORIAL_RADIUS) ** 2
@@ -203,15 +194,3 @@ def sun_in_season(
     """
     vertical = planetographic_latitude(latitude)
     return horizontal(vertical, declination(solar_longitude), hour_angle)
-
-
-def sun_position(time: datetime, place: Place) -> tuple[float, float]:
-    """Return where the sun stands at a time, as `sun_in_season` does.
-
-    Raises
-    ------
-    InputError
-        If the time is out of range.
-    """
-    now = mars_time(time)
-    return sun_in_season(now.solar_longitude, now.hour_angle(place.longitude), place.latitude)

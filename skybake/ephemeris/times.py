@@ -17,7 +17,7 @@ FIRST_YEAR, LAST_YEAR = 1000, 2999
 MAX_STEPS = 100_000
 """Most moments of a range; more is a slip of the pen."""
 
-_OFFSET = r"(?:Z|[+-]\d\d:\d\d(?::\d\d)?)"
+_OFFSET = r"(?:Z|[+-]\d\d:[0-5]\d(?::[0-5]\d)?)"
 _ISO = re.compile(rf"\d{{4}}-\d\d-\d\dT\d\d:\d\d(?::\d\d(?:\.\d{{1,6}})?)?({_OFFSET})?", re.ASCII)
 _EVENT = re.compile(rf"({'|'.join(EVENTS)})(?:([+-])(.+))?")
 _SECONDS_OF_DAY = 86_400.0
@@ -181,6 +181,8 @@ def _parse_event(
     offset = parse_duration(length) if sign else 0.0
     if offset > _SECONDS_OF_DAY:
         raise InputError(f"{name}: offset must be at most 24h, got {length}")
+    if not FIRST_YEAR <= day.year <= LAST_YEAR:
+        raise InputError(f"date must be in the years {FIRST_YEAR} to {LAST_YEAR}, got {day}")
     moment = event_time(name, day, place, zone or mean_solar_zone(place))
     return moment + timedelta(seconds=-offset if sign == "-" else offset)
 

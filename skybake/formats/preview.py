@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -81,17 +81,24 @@ def write_picture(path: Path, pixels: npt.NDArray[np.uint8]) -> None:
 
 
 @contextmanager
-def open_preview(path: Path, *, view: str = "aces2", max_width: int = 1024) -> Iterator[Show]:
+def open_preview(
+    path: Path,
+    *,
+    view: str = "aces2",
+    max_width: int = 1024,
+    texts: Mapping[str, str] | None = None,
+) -> Iterator[Show]:
     """Yield ``show(pixels, colour_space, gain)``; the picture appears when the block ends.
 
-    Parameters and errors are those of `write_preview`.
+    Parameters and errors are those of `write_preview`, with texts that the file shall
+    hold beside the picture.
     """
     check_preview(path, view)
     with replace_when_whole(path) as temporary:
 
         def show(pixels: npt.NDArray[np.float32], colour_space: Tagged, gain: float) -> None:
             exposed = _shrink(pixels, max_width) * np.float32(gain)
-            _write_png(path, temporary, display_values(exposed, colour_space, view))
+            _write_png(path, temporary, display_values(exposed, colour_space, view), texts)
 
         yield show
 
@@ -134,9 +141,14 @@ def display_values(
 
 
 def _write_png(
-    path: Path, temporary: Path, shown: npt.NDArray[np.float32] | npt.NDArray[np.uint8]
+    path: Path,
+    temporary: Path,
+    shown: npt.NDArray[np.float32] | npt.NDArray[np.uint8],
+    texts: Mapping[str, str] | None = None,
 ) -> None:
     spec = OpenImageIO.ImageSpec(shown.shape[1], shown.shape[0], 3, "uint8")
+    for name, text in (texts or {}).items():
+        spec[name] = text
     spec["oiio:ColorSpace"] = "srgb_rec709_display"
     spec["oiio:dither"] = 1
     output = OpenImageIO.ImageOutput.create(str(temporary))
@@ -155,6 +167,8 @@ def _shrink(pixels: npt.NDArray[np.float32], max_width: int) -> npt.NDArray[np.f
     height, width = pixels.shape[:2]
     if width <= max_width:
         return pixels
+    # Without memory for its copy of them the library divides by zero, which ends the process.
+    np.empty_like(pixels)
     size = OpenImageIO.ROI(0, max_width, 0, max(1, round(height * max_width / width)), 0, 1, 0, 3)
     source = OpenImageIO.ImageBuf(np.ascontiguousarray(pixels))
     smaller = OpenImageIO.ImageBufAlgo.resize(source, filtername="triangle", roi=size)

@@ -15,7 +15,7 @@ from skybake.formats.hdr import RADIANCE_EFFICACY, read_header
 from skybake.formats.partial import is_utf8
 
 _BAND_ROWS = 256
-_FORMATS = {".exr": "openexr", ".hdr": "hdr"}
+_FORMATS = {".exr": "openexr", ".hdr": "hdr", ".png": "png"}
 
 
 def read_image(path: Path) -> tuple[npt.NDArray[np.float32], dict[str, Any]]:
@@ -58,7 +58,9 @@ def read_image(path: Path) -> tuple[npt.NDArray[np.float32], dict[str, Any]]:
 
 
 def read_whole_attributes(path: Path) -> dict[str, Any]:
-    """Return the attributes of a map, as `read_image` does, after reading all of its rows.
+    """Return the attributes of a map or a preview, after reading all of its rows.
+
+    They are as of `read_image`.
 
     Raises
     ------

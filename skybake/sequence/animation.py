@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
 Picture = npt.NDArray[np.uint8]
 
+STILL_WIDTH = 512
+"""Of the thumbnails that suit a moving picture. [pixel]"""
+
 
 class _Kind(NamedTuple):
     tick: int  # ms that a frame's duration is a multiple of

@@ -54,7 +54,7 @@ def dask_pool(plan: Plan, look: Look, address: str) -> Iterator[Run]:
     Notes
     -----
     The world and the tables of its air, 8 MB, are sent to each worker once; a frame is
-    half a kilobyte each way beside its thumbnail. A frame whose worker dies goes to
+    half a kilobyte each way beside its thumbnails. A frame whose worker dies goes to
     another one.
     """
     try:

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from skybake.baking.light import Light, attributes_from_light, light_from_attributes
 from skybake.baking.paths import map_paths
-from skybake.baking.recipe import HASH_ATTRIBUTE, recipe_hash
+from skybake.baking.recipe import HASH_ATTRIBUTE, preview_texts, recipe_hash
 from skybake.baking.scene import Scene
 from skybake.baking.show import scene_ev, thumbnail
 from skybake.baking.write import bake_scene
@@ -41,8 +42,8 @@ class Look:
         Exposure value of pictures; None chooses one for each frame by itself.
     follows_map : bool
         Without `ev`, show maps as their own exposure has them.
-    thumbnail_width : int
-        Of the thumbnails; 0 for none. [pixel]
+    thumbnail_widths : tuple of int
+        Of the thumbnails of each frame. [pixel]
     skip_existing : bool
         Leave frames alone whose files are whole and of the same recipe.
     """
@@ -50,7 +51,7 @@ class Look:
     view: str = "aces2"
     ev: float | None = None
     follows_map: bool = False
-    thumbnail_width: int = 0
+    thumbnail_widths: tuple[int, ...] = ()
     skip_existing: bool = False
 
 
@@ -72,8 +73,8 @@ class Outcome:
         Digests of these files.
     ev : float or None
         Exposure value of its picture, if that is known.
-    thumbnail : ndarray of uint8 or None
-        Code values of sRGB, shape (row, column, 3).
+    thumbnails : mapping of int to ndarray of uint8
+        Code values of sRGB, shape (width // 2, width, 3), by their widths.
     """
 
     number: int
@@ -82,7 +83,7 @@ class Outcome:
     files: tuple[Path, ...]
     sha256: tuple[str, ...]
     ev: float | None
-    thumbnail: npt.NDArray[np.uint8] | None
+    thumbnails: Mapping[int, npt.NDArray[np.uint8]]
 
 
 def finish_frame(
@@ -107,7 +108,7 @@ def finish_frame(
         If `is_cancelled` said so; no file is left then.
     """
     work = _Work(frame, planet, look)
-    light = find_light(frame, planet) if look.skip_existing else None
+    light = work.found_light() if look.skip_existing else None
     is_new = light is None
 
     def stop_if_cancelled(_: float = 0.0) -> None:
@@ -138,25 +139,8 @@ def finish_frame(
         files=files,
         sha256=tuple(_sha256(path) for path in files),
         ev=work.ev if frame.preview is not None else None,
-        thumbnail=work.thumbnail() if look.thumbnail_width else None,
+        thumbnails={width: work.thumbnail(width) for width in look.thumbnail_widths},
     )
-
-
-def find_light(frame: Frame, planet: Planet) -> Light | None:
-    """Return the light of a frame whose files are whole and of its recipe, else None."""
-    if frame.preview is not None and not frame.preview.is_file():
-        return None
-    wanted = recipe_hash(planet, frame.settings)
-    light = None
-    for path in map_paths(frame.output, frame.settings):
-        try:
-            attributes = read_whole_attributes(path)
-            light = light_from_attributes(attributes)
-        except (InputError, OSError, KeyError, ValueError):
-            return None
-        if attributes.get(HASH_ATTRIBUTE) != wanted:
-            return None
-    return light
 
 
 class _Work:
@@ -177,8 +161,40 @@ class _Work:
             return ev_from_luminance(self._frame.settings.white_luminance)
         return scene_ev(self.scene)
 
-    def thumbnail(self) -> npt.NDArray[np.uint8]:
-        return thumbnail(self.scene, self.ev, self._look.view, self._look.thumbnail_width)
+    def found_light(self) -> Light | None:
+        """Return the light of the files if they are whole and of this recipe, else None."""
+        planet, settings, preview = self._planet, self._frame.settings, self._frame.preview
+        wanted = {HASH_ATTRIBUTE: recipe_hash(planet, settings)}
+        light = None
+        for path in map_paths(self._frame.output, settings):
+            light = _light_of_file(path, wanted)
+            if light is None:
+                return None
+        if preview is not None:
+            texts = preview_texts(planet, settings, self.ev, self._look.view)
+            if _attributes_with(texts, preview) is None:
+                return None
+        return light
+
+    def thumbnail(self, width: int) -> npt.NDArray[np.uint8]:
+        return thumbnail(self.scene, self.ev, self._look.view, width)
+
+
+def _light_of_file(path: Path, wanted: Mapping[str, str]) -> Light | None:
+    attributes = _attributes_with(wanted, path)
+    try:
+        return None if attributes is None else light_from_attributes(attributes)
+    except (KeyError, ValueError):
+        return None
+
+
+def _attributes_with(wanted: Mapping[str, str], path: Path) -> dict[str, Any] | None:
+    """Return the attributes of a file if it is whole and says what is wanted, else None."""
+    try:
+        attributes = read_whole_attributes(path)
+    except (InputError, OSError):
+        return None
+    return attributes if wanted.items() <= attributes.items() else None
 
 
 def _sha256(path: Path) -> str:

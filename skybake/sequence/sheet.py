@@ -16,6 +16,9 @@ from skybake.formats.preview import write_picture
 
 Picture = npt.NDArray[np.uint8]
 
+TILE_WIDTH = 256
+"""Of the thumbnails that suit a sheet. [pixel]"""
+
 BACKGROUND = 24
 """Code value around the tiles: dark, so that skies are judged by themselves."""
 
@@ -47,9 +50,8 @@ def contact_sheet(
     labels: Sequence[str],
     *,
     title: str,
-    columns: int | None = None,
 ) -> None:
-    """Write a picture with a tile for each frame, its label below, and a title above all.
+    """Write a picture of about 16:9 with a tile for each frame, and a title above all.
 
     Parameters
     ----------
@@ -58,26 +60,20 @@ def contact_sheet(
     thumbnails : sequence of ndarray of uint8, shape (row, column, 3)
         At least one, code values of sRGB, all of one shape.
     labels : sequence of str
-        One for each; letters become smaller where a label is wider than its tile.
+        One for each, below its tile; letters become smaller where a label is wider than its tile.
     title : str
         One line.
-    columns : int, optional
-        Tiles beside each other; by default such that the sheet is about 16:9.
 
     Raises
     ------
     InputError
-        If the suffix is not ``.png``, or there is no column.
+        If the suffix is not ``.png``.
     OutputError
         If the file cannot be written.
     """
     check_sheet(path)
     height, width = thumbnails[0].shape[:2]
-    if columns is None:
-        columns = _columns(len(thumbnails), width / height)
-    if columns < 1:
-        raise InputError(f"columns: must be at least 1, got {columns}")
-    columns = min(columns, len(thumbnails))
+    columns = _columns(len(thumbnails), width / height)
     gap = max(2, width // 32)
     tiles = [
         np.vstack([thumbnail, strip])

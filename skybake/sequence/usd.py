@@ -24,14 +24,24 @@ _SUN_IS_IN_MAPS = (
 )
 
 
-def check_usd(path: Path, projection: str) -> None:
+def check_usd(path: Path, projection: str, files: Iterable[str] = ()) -> None:
     """Raise what can be said of a USD file before anything is computed.
+
+    Parameters
+    ----------
+    path : Path
+        ``.usda``.
+    projection : {"equirect", "cubemap"}
+        Of the maps.
+    files : iterable of str, optional
+        The maps, as seen from the USD file's folder.
 
     Raises
     ------
     InputError
-        If the suffix is not ``.usda``, or the maps are not equirect, which is the only
-        kind that a dome light wears everywhere.
+        If the suffix is not ``.usda``, if the maps are not equirect, which is the only
+        kind that a dome light wears everywhere, or if the name of one has a character
+        that USD cannot hold.
     OutputError
         If a file cannot be written under that name.
     """
@@ -41,6 +51,8 @@ def check_usd(path: Path, projection: str) -> None:
         raise InputError(
             f"{path}: a dome light of USD needs maps of the projection equirect, got {projection}"
         )
+    for file in files:
+        _asset(path, file)
     check_target(path)
 
 
@@ -59,12 +71,12 @@ def write_usd(path: Path, header: SequenceHeader, records: Iterable[FrameRecord]
     Raises
     ------
     InputError
-        As `check_usd`, or if a file's name has a character that USD cannot hold.
+        As `check_usd`.
     OutputError
         If the file cannot be written.
     """
-    check_usd(path, header.projection)
     rows = ascending(records)
+    check_usd(path, header.projection, (row.files[0] for row in rows))
     lines = [*_layer(header, rows), *_dome(path, header, rows), "", *_sun(header, rows), "}"]
     with replace_when_whole(path) as temporary:
         temporary.write_text("\n".join(lines) + "\n", "utf-8")

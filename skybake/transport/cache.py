@@ -6,6 +6,7 @@ or comes from elsewhere, is made anew instead of being trusted.
 
 from __future__ import annotations
 
+import errno
 import functools
 import hashlib
 import os
@@ -20,6 +21,7 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
+from skybake.errors import OutputError
 from skybake.version import __version__
 
 UNUSED_AFTER = 30 * 86400.0
@@ -38,43 +40,62 @@ _OTHERS_MAY_WRITE = 0o002
 
 @functools.cache
 def cache_directory() -> Path | None:
-    """Folder of this version's kernels and tables, or None where none can be written.
+    """Folder of this version's kernels and tables, or None where there can be none.
 
     It is named by a digest of the kernels' sources and of what compiles them.
     SKYBAKE_CACHE_DIR and NUMBA_CACHE_DIR take precedence over the user's cache
     folder. A folder that others can write to is not used, since a compiled kernel is
-    a program.
+    a program; one that only root can write to, as in an image of a container, is.
     """
-    parent = cache_root()
-    if parent is None:
+    directory = version_directory()
+    if directory is None:
         warn_of_no_cache("SKYBAKE_CACHE_DIR: kernel cache must be given without a home folder")
         return None
-    directory = parent / f"{_PREFIX}{source_hash(*KERNEL_SOURCES)}"
     is_new = not directory.is_dir()
     try:
         directory.mkdir(0o755, parents=True, exist_ok=True)
     except OSError:
-        writable = False
-    else:
-        writable = os.access(directory, os.W_OK | os.X_OK)
-    if not writable:
         warn_of_no_cache(f"{directory}: kernel cache must be writable")
         return None
     if not _is_private(directory):
         warn_of_no_cache(f"{directory}: kernel cache must be writable for its owner only")
         return None
     if is_new:
-        _remove_unused(parent)
+        _remove_unused(directory.parent)
     with suppress(OSError):
         if time.time() - directory.stat().st_mtime > _DAY:
             os.utime(directory)
     return directory
 
 
+def check_cache() -> None:
+    """Refuse a folder in which nothing can be kept.
+
+    Raises
+    ------
+    OutputError
+        If it cannot be written to, or `cache_directory` does not use it.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)
+        directory = cache_directory()
+    if directory is None or not os.access(directory, os.W_OK | os.X_OK):
+        raise OutputError(
+            f"{directory or cache_root()}: kernel cache must be a folder that is writable for its "
+            "owner only, got one that is not; SKYBAKE_CACHE_DIR names another"
+        )
+
+
 def cache_root() -> Path | None:
     """Folder that holds those of all versions; None without a home."""
     configured = os.environ.get("SKYBAKE_CACHE_DIR") or os.environ.get("NUMBA_CACHE_DIR")
     return Path(configured) if configured else _user_cache()
+
+
+def version_directory() -> Path | None:
+    """Folder of this version, be it there or not; None without a home."""
+    parent = cache_root()
+    return None if parent is None else parent / f"{_PREFIX}{source_hash(*KERNEL_SOURCES)}"
 
 
 def is_warm() -> bool:
@@ -151,10 +172,15 @@ def clear_cache() -> None:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-@functools.cache
-def warn_of_full_disk(directory: Path) -> None:
+def warn_of_loss(directory: Path, error: OSError) -> None:
     """Warn once that compiled kernels could not be kept."""
-    warn_of_no_cache(f"{directory}: kernel cache must have room")
+    is_full = error.errno in {errno.ENOSPC, errno.EDQUOT}
+    _warn_once(f"{directory}: kernel cache must {'have room' if is_full else 'be writable'}")
+
+
+@functools.cache
+def _warn_once(fault: str) -> None:
+    warn_of_no_cache(fault)
 
 
 def warn_of_no_cache(fault: str) -> None:

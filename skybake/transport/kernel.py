@@ -18,7 +18,7 @@ from skybake.transport.cache import (
     KERNEL_SUFFIX,
     cache_directory,
     read_sealed,
-    warn_of_full_disk,
+    warn_of_loss,
     write_sealed,
 )
 from skybake.transport.machine_code import Entry, MachineCode
@@ -111,8 +111,8 @@ def _keep(path: Path, machine_code: MachineCode) -> None:
     """Write a file; where that fails the code serves this process only."""
     try:
         write_sealed(path, machine_code.to_bytes())
-    except OSError:
-        warn_of_full_disk(path.parent)
+    except OSError as error:
+        warn_of_loss(path.parent, error)
 
 
 @functools.cache

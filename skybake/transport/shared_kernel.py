@@ -20,7 +20,7 @@ from skybake.transport.cache import (
     cache_directory,
     read_sealed,
     source_hash,
-    warn_of_full_disk,
+    warn_of_loss,
     write_sealed,
 )
 from skybake.transport.compile import FAST_MATH
@@ -66,8 +66,8 @@ class _KernelCache(_Cache):
         """Keep a compiled kernel; where that fails it serves this process only."""
         try:
             write_sealed(self._path(sig, data.codegen), dumps(data._reduce()))
-        except OSError:
-            warn_of_full_disk(self._directory)
+        except OSError as error:
+            warn_of_loss(self._directory, error)
 
     def enable(self) -> None:
         """Do nothing: it is always on."""

@@ -1,6 +1,7 @@
 """Ways to run the command line: in this process, and in one of its own."""
 
 import os
+import pty
 import subprocess
 import sys
 from pathlib import Path
@@ -12,6 +13,10 @@ from skybake.cli import main
 
 PACKAGES = str(Path(skybake.__file__).parents[1])
 SMALL = ("--size", "64x32")
+
+# Root may write everywhere, unless a capability is taken from it.
+AS_A_USER = ("setpriv", "--bounding-set=-dac_override,-dac_read_search") if os.getuid() == 0 else ()
+"""Wrapper of a process that may write only where its permissions say so."""
 
 
 def invoke(*arguments):
@@ -49,6 +54,31 @@ def run(*arguments, **keywords):
     process = start(*arguments, **keywords)
     output, errors = process.communicate(timeout=240)
     return process.returncode, output, errors
+
+
+def render(target, *arguments, **keywords):
+    """Render in a process of its own, which must say nothing; returns the bytes of the map."""
+    status, output, errors = run(
+        *("render", *arguments, "-o", target, "--quiet"), cwd=target.parent, **keywords
+    )
+    assert (status, output, errors) == (0, "", "")
+    return target.read_bytes()
+
+
+def run_on_terminal(*arguments, **keywords):
+    """Run with a terminal for standard error; returns exit status, stdout, and its bytes."""
+    terminal, end = pty.openpty()
+    process = start(*arguments, stderr=end, **keywords)
+    os.close(end)
+    seen = b""
+    try:
+        while chunk := os.read(terminal, 4096):
+            seen += chunk
+    except OSError:  # the other end is closed
+        pass
+    os.close(terminal)
+    output, _ = process.communicate(timeout=60)
+    return process.returncode, output, seen
 
 
 def listing(folder):

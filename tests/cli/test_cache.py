@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.runs import SMALL, invoke, run
+from tests.cli.runs import AS_A_USER, SMALL, run
 
 
 @pytest.fixture
@@ -24,9 +24,12 @@ def test_info_tells_what_each_version_has(tmp_path, cold):
     (old / "atmospheres").mkdir(parents=True)
     (old / "a.kernel").write_bytes(bytes(1000))
     (old / "atmospheres" / "b.tables").write_bytes(bytes(2_000_000))
+    _, text, _ = run("cache", "info", env=cold)
+    assert "kernels-0123: 1 kernels 0.0 MB, 1 atmospheres 2.0 MB" in text
+    assert "(this version)" not in text
     found = info(cold)
     assert found["folder"] == str(tmp_path / "cache")
-    (other,) = (version for version in found["versions"] if not version["present"])
+    (other,) = found["versions"]
     assert other == {
         "folder": str(old),
         "present": False,
@@ -35,9 +38,21 @@ def test_info_tells_what_each_version_has(tmp_path, cold):
         "atmospheres": 1,
         "atmosphere_bytes": 2_000_000,
     }
-    _, text, _ = run("cache", "info", env=cold)
-    assert "kernels-0123: 1 kernels 0.0 MB, 1 atmospheres 2.0 MB" in text
-    assert text.count("(this version)") == 1
+
+
+def test_info_makes_no_folder(tmp_path, cold):
+    assert info(cold) == {"folder": str(tmp_path / "cache"), "versions": []}
+    assert not (tmp_path / "cache").exists()
+
+
+def test_info_marks_the_folder_of_this_version(tmp_path):
+    """Of the cache that other tests have filled."""
+    assert run("render", *SMALL, "-q", "-o", tmp_path / "a.exr") == (0, "", "")
+    (present,) = (version for version in info({})["versions"] if version["present"])
+    assert present["kernels"] > 0
+    _, text, _ = run("cache", "info")
+    (line,) = (line for line in text.splitlines() if "(this version)" in line)
+    assert line.startswith(Path(present["folder"]).name)
 
 
 def test_clear_leaves_what_is_not_ours(tmp_path, cold):
@@ -54,10 +69,37 @@ def test_clear_of_nothing_is_no_fault(cold):
     assert run("cache", "clear", env=cold) == (0, "0.0 MB freed\n", "")
 
 
-def test_warm_refuses_an_unknown_preset():
-    result = invoke("cache", "warm", "--preset", "nowhere")
-    assert result.exit_code == 1
-    assert "nowhere" in result.stderr
+def test_clear_names_a_folder_that_it_cannot_remove(tmp_path, cold):
+    folder = tmp_path / "cache" / "kernels-0123"
+    folder.mkdir(parents=True)
+    (folder / "a.kernel").write_bytes(bytes(3_000_000))
+    folder.chmod(0o555)
+    status, output, errors = run("cache", "clear", env=cold, wrapper=AS_A_USER)
+    assert (status, output) == (1, "")
+    assert errors == f"skybake: {folder}: must be removable, got 3.0 MB that stay\n"
+    folder.chmod(0o755)
+
+
+@pytest.mark.parametrize("presets", [("nowhere",), ("earth", "nowhere")])
+def test_warm_refuses_an_unknown_preset_before_anything_is_compiled(tmp_path, cold, presets):
+    options = [word for preset in presets for word in ("--preset", preset)]
+    status, output, errors = run("cache", "warm", *options, env=cold)
+    assert (status, output) == (1, "")
+    assert errors.startswith("skybake: unknown preset 'nowhere'; known presets: ")
+    assert errors.count("\n") == 1
+    assert not list((tmp_path / "cache").rglob("*.*"))
+
+
+@pytest.mark.parametrize("name", ["file/cache", "cache"])
+def test_warm_refuses_a_folder_in_which_nothing_can_be_kept(tmp_path, name):
+    (tmp_path / "file").write_text("not a folder")
+    tmp_path.chmod(0o555)
+    folder = tmp_path / name
+    environment = {"SKYBAKE_CACHE_DIR": str(folder)}
+    status, output, errors = run("cache", "warm", env=environment, wrapper=AS_A_USER)
+    assert (status, output) == (1, "")
+    assert errors.startswith(f"skybake: {folder}: kernel cache must be a folder that is writable")
+    assert errors.count("\n") == 1
 
 
 USES = [

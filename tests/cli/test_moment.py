@@ -12,8 +12,7 @@ import pytest
 from skybake.commands.moment import moments
 from skybake.commands.parameters import latitude, longitude
 from skybake.ephemeris.earth import refraction, sun_position
-from skybake.ephemeris.mars import SITES, mars_time
-from skybake.ephemeris.mars import sun_position as sun_from_mars
+from skybake.ephemeris.mars import SITES, mars_time, sun_in_season
 from skybake.ephemeris.place import Place
 from skybake.formats.reader import read_image
 from tests.cli.runs import SMALL, invoke, listing
@@ -22,11 +21,7 @@ from tests.cli.test_faults import check_fault, table
 PARIS = ("--lat", "48.8566", "--lon", "2.3522")
 MARS = ("--preset", "mars")
 
-
-@pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
+pytestmark = pytest.mark.usefixtures("folder")
 
 
 def render(*arguments):
@@ -102,13 +97,14 @@ def test_refraction_lifts_the_sun_and_is_told():
 
 def test_mars_has_the_sun_of_its_own_time():
     told, attributes, _ = render(*MARS, "--site", "gale", "--time", "2026-06-21T04:00Z")
-    time = datetime(2026, 6, 21, 4, tzinfo=UTC)
-    sun = sun_from_mars(time, SITES["gale"])
+    now, place = mars_time(datetime(2026, 6, 21, 4, tzinfo=UTC)), SITES["gale"]
+    hour_angle = now.hour_angle(place.longitude)
+    sun = sun_in_season(now.solar_longitude, hour_angle, place.latitude)
     assert told["sun_direction"] == pytest.approx(direction(*sun), abs=1e-12)
     assert told["time"] == attributes["skybake:time"] == "2026-06-21T04:00:00Z"
-    season = math.degrees(mars_time(time).solar_longitude)
+    season = math.degrees(now.solar_longitude)
     assert attributes["skybake:solarLongitude"] == pytest.approx(season, rel=1e-6)
-    hours = 12 + 12 / math.pi * mars_time(time).hour_angle(SITES["gale"].longitude)
+    hours = 12 + 12 / math.pi * hour_angle
     clock = [int(part) for part in attributes["skybake:trueSolarTime"].split(":")]
     assert clock[0] + clock[1] / 60 + clock[2] / 3600 == pytest.approx(hours, abs=1.5e-4)
 

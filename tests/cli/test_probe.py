@@ -123,6 +123,10 @@ def test_reference_and_the_full_solution_agree_within_its_errors(place, views):
         (f"{VIEWS}nan,0\n", "line 5: view_zenith_deg: must be a number, got 'nan'"),
         (f"{VIEWS}5,inf\n", "line 5: relative_azimuth_deg: must be a number, got 'inf'"),
         (f"{VIEWS}5,east\n", "line 5: relative_azimuth_deg: must be a number, got 'east'"),
+        (
+            f"{VIEWS}{'1' * 200_000},0\n",
+            "line 5: must be CSV, got field larger than field limit (131072)",
+        ),
         (f"{VIEWS}5\n", "line 5: relative_azimuth_deg: must be a number, got ''"),
     ],
 )

@@ -1,36 +1,15 @@
-"""The command line as a process: interrupts, neighbours, terminals, memory, bytes."""
+"""The command line as a process: bytes, signals, kills, neighbours."""
 
-import json
-import os
-import pty
 import random
 import signal
-import subprocess
-import sys
 import time
-from pathlib import Path
 
 import numpy as np
 import OpenImageIO
 import pytest
 
 from skybake.formats.reader import read_image
-from tests.cli.runs import PACKAGES, SMALL, listing, run, start
-
-
-def render(target, *arguments, **keywords):
-    status, output, errors = run(
-        *("render", *arguments, "-o", target, "--quiet"), cwd=target.parent, **keywords
-    )
-    assert (status, output, errors) == (0, "", "")
-    return target.read_bytes()
-
-
-@pytest.fixture(scope="module")
-def warm(tmp_path_factory):
-    """Kernels are compiled."""
-    render(tmp_path_factory.mktemp("warm") / "a.exr", *SMALL, "--preview")
-
+from tests.cli.runs import SMALL, listing, render, run, start
 
 WAYS = {
     "exr": (*SMALL, "--sun", "-2deg"),
@@ -158,173 +137,6 @@ def test_two_processes_on_one_target_leave_one_whole_map(tmp_path):
     assert whole == render(target, *SMALL)
 
 
-@pytest.mark.usefixtures("warm")
-def test_a_terminal_sees_a_bar(tmp_path):
-    master, slave = pty.openpty()
-    pid = os.fork()
-    if pid == 0:
-        os.dup2(slave, 2)
-        os.chdir(tmp_path)
-        os.environ["PYTHONPATH"] = PACKAGES
-        code = "from skybake.cli import run; run()"
-        arguments = ["render", *SMALL, "--json", "-o", "a.exr"]
-        os.execv(sys.executable, [sys.executable, "-c", code, *arguments])  # noqa: S606
-    os.close(slave)
-    seen = b""
-    try:
-        while chunk := os.read(master, 4096):
-            seen += chunk
-    except OSError:
-        pass
-    os.close(master)
-    assert os.waitpid(pid, 0)[1] == 0
-    assert b"100%" in seen
-
-
-STATUSES = [
-    (0, ("presets", "list")),
-    (1, ("presets", "show", "vulcan")),
-    (2, ("render", "--sun", "95deg")),
-    (2, ("rendr",)),
-]
-
-
-@pytest.mark.parametrize(("status", "arguments"), STATUSES)
-def test_the_program_ends_with_the_status_of_its_command(status, arguments):
-    found, _, errors = run(*arguments)
-    assert found == status
-    assert errors.count("\n") == (status != 0)
-
-
-@pytest.fixture
-def many_directions(tmp_path):
-    """A CSV that makes an answer of more than a pipe holds."""
-    path = tmp_path / "directions.csv"
-    lines = (f"{0.02 * i:.2f},{i % 360}" for i in range(4000))
-    path.write_text("\n".join(["view_zenith_deg,relative_azimuth_deg", *lines, ""]))
-    return path
-
-
-def test_all_that_is_printed_reaches_a_pipe(tmp_path, many_directions):
-    options = ("probe", "--method", "hillaire", "--directions", many_directions)
-    status, output, errors = run(*options)
-    assert (status, errors) == (0, "")
-    assert len(output) > 1 << 18
-    assert output.count("\n") == 4001
-    assert run(*options, "-o", tmp_path / "a.csv") == (0, "", "")
-    assert output == (tmp_path / "a.csv").read_text()
-
-
-@pytest.mark.usefixtures("warm")
-def test_json_reaches_a_pipe(tmp_path):
-    status, output, _ = run("render", *SMALL, "--json", "-q", "-o", tmp_path / "a.exr")
-    assert status == 0
-    assert json.loads(output)["files"] == [str(tmp_path / "a.exr")]
-
-
-@pytest.mark.parametrize("end", ["head -c0", "head -c100", "true"])
-def test_a_reader_that_closes_early_gets_no_traceback(many_directions, end):
-    """In a pipe of the shell's, with the status of the first program."""
-    code = "from skybake.cli import run; run()"
-    command = f'"$0" -c "{code}" "$@" | {end}; exit ${{PIPESTATUS[0]}}'
-    options = ("probe", "--method", "hillaire", "--directions", str(many_directions))
-    result = subprocess.run(
-        ["bash", "-c", command, sys.executable, *options],
-        # Unbuffered, Python does not notice that only a part was taken.
-        env=os.environ | {"PYTHONPATH": PACKAGES, "PYTHONUNBUFFERED": ""},
-        capture_output=True,
-        text=True,
-        timeout=240,
-        check=False,
-    )
-    assert (result.returncode, result.stderr) == (1, "")
-
-
-CLOSED = """
-import os, sys
-os.close(1)
-code = "from skybake.cli import run; run()"
-os.execv(sys.executable, [sys.executable, "-c", code, *sys.argv[1:]])
-"""
-
-
-@pytest.mark.parametrize("arguments", [("presets", "show", "mars"), ("--version",)])
-def test_without_standard_output_the_program_ends_in_peace(arguments):
-    status, output, errors = run(*arguments, code=CLOSED)
-    assert (status, output, errors) == (0, "", "")
-
-
-def test_a_full_disk_below_standard_output_is_one_line():
-    with Path("/dev/full").open("w") as full:
-        status, _, errors = run("presets", "show", "mars", stdout=full)
-    assert (status, errors) == (1, "skybake: must be able to write, got No space left on device\n")
-
-
-BARE = """
-import sys
-
-class Refuse:
-    def find_spec(self, name, path=None, target=None):
-        if name.partition(".")[0] in ("colour", "scipy"):
-            raise ImportError(name)
-
-sys.meta_path.insert(0, Refuse())
-from skybake.cli import main
-main()
-"""
-
-
-@pytest.mark.usefixtures("warm")
-def test_a_render_needs_neither_colour_science_nor_scipy(tmp_path):
-    """numba looks for scipy by itself, so that its absence from sys.modules can't be asked for."""
-    for preset in ("earth", "mars", "earth-hillaire2020"):
-        arguments = (*SMALL, "--preset", preset, "--preview")
-        bare = render(tmp_path / "bare.exr", *arguments, code=BARE)
-        assert bare == render(tmp_path / "full.exr", *arguments)
-
-
-MEASURED = """
-import resource, sys
-from skybake.cli import main
-try:
-    main(sys.argv[1:])
-finally:
-    print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
-"""
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("warm")
-@pytest.mark.parametrize("suffix", ["exr", "hdr"])
-def test_16k_needs_at_most_500_megabytes(tmp_path, suffix):
-    status, output, errors = run(
-        *("render", "--size", "16384x8192", "--quiet", "-o", tmp_path / f"a.{suffix}"),
-        code=MEASURED,
-    )
-    assert status == 0, errors
-    assert int(output) * 1024 < 500e6
-
-
-@pytest.mark.usefixtures("warm")
-@pytest.mark.parametrize("megabytes", [128, 400, 700])
-@pytest.mark.parametrize("command", ["render", "sequence", "preview", "probe"])
-def test_too_little_memory_is_one_line(tmp_path, command, megabytes):
-    arguments = {
-        "render": ("-o", "a.exr"),
-        "sequence": ("--frames", "1-2", "-o", "a.#.exr"),
-        "preview": ("a.exr",),
-        "probe": (),
-    }[command]
-    limit = ("prlimit", f"--as={megabytes << 20}")
-    status, output, errors = run(command, *arguments, cwd=tmp_path, wrapper=limit)
-    assert (status, output) == (1, "")
-    assert errors == (
-        "skybake: memory: must be at least 1024 MB of address space, "
-        f"got a limit of {megabytes} MB\n"
-    )
-    assert listing(tmp_path) == []
-
-
 KILLED = {
     "render": ("render", *SMALL, "-q", "-o", "sky.exr"),
     "cubemap": ("render", "--projection", "cubemap", "--size", "64", "-q", "-o", "sky.exr"),
@@ -356,52 +168,6 @@ def test_killed_at_any_moment_it_leaves_whole_files_or_none(tmp_path, way):
                 (folder / name).unlink()
     assert run(*KILLED[way], cwd=folder) == (0, "", "")
     assert listing(folder) == listing(whole)
-
-
-HARDLY_ANY = {"PATH": os.environ["PATH"], "PYTHONPATH": PACKAGES}
-
-
-def run_bare(*arguments, cwd, **environment):
-    """Run with hardly any environment."""
-    cache = {"SKYBAKE_CACHE_DIR": os.environ["SKYBAKE_CACHE_DIR"]}
-    result = subprocess.run(
-        [sys.executable, "-m", "skybake", *arguments],
-        cwd=cwd,
-        env={**HARDLY_ANY, **cache, **environment},
-        capture_output=True,
-        check=False,
-        timeout=240,
-    )
-    return result.returncode, result.stdout, result.stderr
-
-
-@pytest.mark.usefixtures("warm")
-@pytest.mark.parametrize(
-    "environment", [{}, {"LC_ALL": "C"}, {"LC_ALL": "POSIX", "TERM": "dumb"}, {"TZ": "Nowhere"}]
-)
-def test_without_home_terminal_and_locale_maps_are_as_they_are(tmp_path, environment):
-    name = "a folder/sky é 空.exr"
-    (tmp_path / "a folder").mkdir()
-    expected = render(tmp_path / "plain.exr", *SMALL)
-    assert run_bare("render", *SMALL, "-q", "-o", name, cwd=tmp_path, **environment) == (
-        0,
-        b"",
-        b"",
-    )
-    assert (tmp_path / name).read_bytes() == expected
-
-
-@pytest.mark.usefixtures("warm")
-@pytest.mark.parametrize("arguments", [("render", *SMALL, "-o"), ("preview",)])
-def test_a_name_that_is_no_utf8_is_one_line(tmp_path, arguments):
-    name = b"sky\xff.exr"
-    if arguments[0] == "preview":
-        (tmp_path / os.fsdecode(name)).write_bytes(b"")
-    status, output, errors = run_bare(*arguments, name, cwd=tmp_path)
-    assert (status, output) == (1, b"")
-    assert errors.splitlines()[-1].startswith(b"skybake: sky")
-    assert b"must be UTF-8" in errors
-    assert len(errors.splitlines()) <= 2
 
 
 def half_steps(path):

@@ -10,11 +10,15 @@ import pytest
 
 from skybake.ephemeris import mars
 from skybake.errors import InputError
-from tests.ephemeris.places import at
 
 EXAMPLE = datetime(2000, 1, 6, tzinfo=UTC)
 J2000 = datetime(2000, 1, 1, 12, tzinfo=UTC)
 TIMES = [datetime(1976, 7, 20, 11, 53, tzinfo=UTC) + timedelta(days=97.3 * n) for n in range(200)]
+
+
+def declination_of_mars24(solar_longitude):
+    """Planetographic latitude below the sun, "Algorithm and Worked Examples", eq. D-1."""
+    return mars.declination(solar_longitude) + math.radians(0.25) * math.sin(solar_longitude)
 
 
 def terrestrial_days(time):
@@ -31,7 +35,7 @@ def test_the_worked_example_of_mars24_is_reproduced():
     true_hour = 12.0 + 12.0 / math.pi * now.hour_angle(0.0)
     assert true_hour == pytest.approx(23.64840, abs=1e-5)
     # Printed as -25.22838, with an obliquity of one more digit.
-    declination = mars.planetographic_declination(now.solar_longitude)
+    declination = declination_of_mars24(now.solar_longitude)
     assert math.degrees(declination) == pytest.approx(-25.22838, abs=2e-4)
     # With Mars24's declination the sun is where Mars24 has it.
     elevation, azimuth = mars.horizontal(0.0, declination, now.hour_angle(0.0))
@@ -65,17 +69,15 @@ def test_season_and_clock_agree_with_marstime(longitude):
 def test_the_sun_stands_where_marstime_has_it_but_for_its_declination():
     """Mars24's declination is of a point on the ground, 0.25 deg from that of the sun."""
     for time in TIMES:
-        days, place = terrestrial_days(time), at(-4.59, 137.44)
-        found = math.degrees(mars.sun_position(time, place)[0])
-        vertical = math.degrees(mars.planetographic_latitude(place.latitude))
-        expected = marstime.solar_elevation(-137.44, vertical, days)
-        assert found == pytest.approx(expected, abs=0.26)
+        days, latitude = terrestrial_days(time), math.radians(-4.59)
         now = mars.mars_time(time)
-        same, _ = mars.horizontal(
-            math.radians(vertical),
-            mars.planetographic_declination(now.solar_longitude),
-            now.hour_angle(place.longitude),
-        )
+        hour_angle = now.hour_angle(math.radians(137.44))
+        found, _ = mars.sun_in_season(now.solar_longitude, hour_angle, latitude)
+        vertical = mars.planetographic_latitude(latitude)
+        expected = marstime.solar_elevation(-137.44, math.degrees(vertical), days)
+        assert math.degrees(found) == pytest.approx(expected, abs=0.26)
+        theirs = declination_of_mars24(now.solar_longitude)
+        same, _ = mars.horizontal(vertical, theirs, hour_angle)
         assert math.degrees(same) == pytest.approx(expected, abs=0.005)
 
 

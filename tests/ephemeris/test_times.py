@@ -69,6 +69,8 @@ def test_a_time_without_offset_and_zone_is_refused():
         ("sunset10min", "must be as 2026-06-21T04:00Z or an event"),
         ("sunset+", "must be as 2026-06-21T04:00Z or an event"),
         ("sunset+10", "must be a duration such as 10min"),
+        ("2026-06-21T04:00+00:00:61", "must be as 2026-06-21T04:00Z or an event"),
+        ("2026-06-21T04:00+02:60", "must be as 2026-06-21T04:00Z or an event"),
         ("sunset+25h", "sunset: offset must be at most 24h, got 25h"),
         ("", "must be as 2026-06-21T04:00Z or an event"),
     ],

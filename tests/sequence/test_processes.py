@@ -1,7 +1,5 @@
 """Sequences as processes: killed, interrupted, side by side, on full and on locked disks."""
 
-import os
-import pty
 import signal
 import subprocess
 import time
@@ -10,7 +8,7 @@ import numpy as np
 import pytest
 
 from skybake.formats.reader import read_whole_attributes
-from tests.cli.runs import installed, listing, run, start
+from tests.cli.runs import AS_A_USER, installed, listing, run, run_on_terminal, start
 from tests.sequence.runs import QUICK, bake, contents, wait_for
 
 
@@ -111,18 +109,6 @@ def test_two_sequences_in_one_folder_leave_whole_frames(tmp_path, undisturbed):
     assert contents(tmp_path) == {name: undisturbed[name] for name in names}
 
 
-@pytest.fixture
-def small_disk(tmp_path):
-    """A file system of 64 KiB."""
-    folder = tmp_path / "disk"
-    folder.mkdir()
-    mount = ["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", folder]
-    if subprocess.run(mount, check=False, capture_output=True).returncode:
-        pytest.skip("mounting a small file system needs root")
-    yield folder
-    subprocess.run(["umount", folder], check=True)
-
-
 def test_a_full_disk_fails_the_frames_that_have_no_room_and_keeps_the_others(small_disk):
     errors = bake(small_disk, "--frames", "1-20", "--retry", "1", status=3).splitlines()
     done = {name for name in listing(small_disk) if name.endswith(".exr")}
@@ -140,14 +126,11 @@ def test_a_full_disk_fails_the_frames_that_have_no_room_and_keeps_the_others(sma
 
 
 def test_a_folder_that_takes_no_file_is_one_line_before_anything_is_computed(tmp_path):
-    # Root may write everywhere, unless a capability is taken from it.
-    root = os.getuid() == 0
-    bound = ("setpriv", "--bounding-set=-dac_override,-dac_read_search") if root else ()
     folder = tmp_path / "protected"
     folder.mkdir(mode=0o555)
     status, output, errors = run(
         *(*QUICK, "--frames", "1-9", "-o", "protected/a.#.exr", "--set", "ground.albedo=0.123"),
-        wrapper=bound,
+        wrapper=AS_A_USER,
         cwd=tmp_path,
     )
     assert (status, output) == (1, "")
@@ -212,19 +195,9 @@ def test_one_worker_two_workers_and_emitted_commands_make_the_same_bytes(tmp_pat
 
 
 def test_a_terminal_sees_a_bar_with_the_speed(tmp_path):
-    terminal, end = pty.openpty()
     arguments = ("-o", "a.#.exr", "--frames", "1-6", "--json")
-    process = start(*QUICK, *arguments, cwd=tmp_path, stderr=end)
-    os.close(end)
-    seen = b""
-    try:
-        while chunk := os.read(terminal, 4096):
-            seen += chunk
-    except OSError:  # the other end is closed
-        pass
-    os.close(terminal)
-    output, _ = process.communicate(timeout=60)
-    assert process.returncode == 0
+    status, output, seen = run_on_terminal(*QUICK, *arguments, cwd=tmp_path)
+    assert status == 0
     assert output.startswith('{"baked": 6, ')
     assert b"  6/6  " in seen
     assert b" frames/s, " in seen

@@ -69,12 +69,27 @@ def test_without_a_writable_folder_kernels_run_with_one_warning(tmp_path, variab
     assert "kernel cache must be writable" in result.stderr
 
 
+UNPRIVILEGED = ("setpriv", "--bounding-set=-dac_override,-dac_read_search")
+
+
 def test_in_a_write_protected_folder_kernels_run_with_one_warning(tmp_path):
     """Root may write everywhere, unless a capability is taken from it."""
     tmp_path.chmod(0o555)
-    bound = () if os.getuid() else ("setpriv", "--bounding-set=-dac_override,-dac_read_search")
-    result = run(tmp_path, wrapper=bound)
+    result = run(tmp_path, wrapper=() if os.getuid() else UNPRIVILEGED)
     check_that_nothing_is_kept(result, "kernel cache must be writable")
+
+
+def test_a_folder_that_root_filled_is_read_by_all(tmp_path):
+    """As a container's users do what `skybake cache warm` left in its image."""
+    folder = Path(run(tmp_path).stdout.split()[0])
+    folder.chmod(0o555)
+    bound = () if os.getuid() else UNPRIVILEGED
+    result = run(tmp_path, wrapper=bound)
+    assert result.stdout.split() == [str(folder), "True", "True", "1"]
+    assert result.stderr == ""
+    missing = run(tmp_path, wrapper=bound, script=LARGER)
+    assert missing.stderr.count("RuntimeWarning") == 1
+    assert f"{folder}: kernel cache must be writable" in missing.stderr
 
 
 HOMELESS = """
@@ -119,19 +134,14 @@ def test_other_platforms_keep_caches_where_they_are_used_to(
     assert cache._user_cache() == Path(expected)
 
 
+@pytest.mark.parametrize("small_disk", ["size=64k,nr_inodes=64"], indirect=True)
 @pytest.mark.parametrize("room", [0, 4096])
-def test_on_a_full_disk_kernels_run_with_one_warning(tmp_path, room):
+def test_on_a_full_disk_kernels_run_with_one_warning(small_disk, room):
     """Without any room, or with room for a part of a kernel."""
-    mount = ["mount", "-t", "tmpfs", "-o", "size=64k,nr_inodes=64", "tmpfs", str(tmp_path)]
-    if subprocess.run(mount, check=False, capture_output=True).returncode:
-        pytest.skip("mounting a small file system needs root")
-    try:
-        folder = tmp_path / f"kernels-{cache.source_hash(*cache.KERNEL_SOURCES)}"
-        folder.mkdir()
-        (tmp_path / "ballast").write_bytes(bytes(shutil.disk_usage(tmp_path).free - room))
-        result = run(tmp_path, script=LARGER + SCRIPT)
-    finally:
-        subprocess.run(["umount", str(tmp_path)], check=True)
+    folder = small_disk / f"kernels-{cache.source_hash(*cache.KERNEL_SOURCES)}"
+    folder.mkdir()
+    (small_disk / "ballast").write_bytes(bytes(shutil.disk_usage(small_disk).free - room))
+    result = run(small_disk, script=LARGER + SCRIPT)
     assert result.stdout.split()[0] == str(folder)
     assert result.stdout.split()[-1] == "0"
     assert result.stderr.count("RuntimeWarning") == 1

@@ -1,0 +1,73 @@
+"""What ``skybake sequence`` prints of its frames before they are baked and after."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from skybake.commands.report import notice
+
+if TYPE_CHECKING:
+    from skybake.sequence.plan import Plan
+    from skybake.sequence.run import Result
+
+
+def print_plan(plan: Plan, *, as_json: bool) -> None:
+    """Print each frame's sun, time and file, or all that is known of it as one JSON object."""
+    frames = plan.summary()
+    if as_json:
+        click.echo(json.dumps({"frames": frames}))
+        return
+    for frame in frames:
+        label = f"  {frame['label']}" if frame["label"] else ""
+        click.echo(
+            f"{frame['frame']}  sun {frame['sun_elevation_deg']:.2f}deg at "
+            f"{frame['sun_azimuth_deg']:.2f}deg, altitude {frame['altitude_m']:g}m"
+            f"{label}  {frame['file']}"
+        )
+
+
+def print_summary(result: Result, written: Sequence[Path], seconds: float) -> None:
+    """Print the files about the sequence, and how many frames went how, for people."""
+    for path in written:
+        click.echo(path)
+    baked, skipped = _counts(result)
+    click.echo(
+        f"{baked} frames baked, {skipped} skipped, {len(result.failures)} failed; {seconds:.1f} s"
+    )
+
+
+def print_json(result: Result, written: Sequence[Path], seconds: float) -> None:
+    """Print one JSON object on one line, see docs/cli.md."""
+    baked, skipped = _counts(result)
+    told = {
+        "baked": baked,
+        "skipped": skipped,
+        "failed": {str(number): message for number, message in result.failures.items()},
+        "files": [str(path) for outcome in result.outcomes for path in outcome.files],
+        "written": [str(path) for path in written],
+        "seconds": round(seconds, 3),
+    }
+    click.echo(json.dumps(told))
+
+
+def print_failures(result: Result, *, openjd: bool) -> None:
+    """Say why frames failed, and which; to the Open Job Description too if it listens."""
+    from skybake.sequence.frames import format_frames
+
+    for number, message in result.failures.items():
+        notice(f"frame {number}: {message}")
+    line = f"frames failed: {format_frames(result.failures)}"
+    notice(line)
+    if openjd:
+        click.echo(f"openjd_fail: {line}")
+
+
+def _counts(result: Result) -> tuple[int, int]:
+    """How many frames were baked, and how many were skipped."""
+    baked = sum(outcome.is_new for outcome in result.outcomes)
+    return baked, len(result.outcomes) - baked
