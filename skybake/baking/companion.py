@@ -13,16 +13,16 @@ import numpy as np
 
 from skybake.luts.grid import ORDER, empty_field, sun_angles
 from skybake.luts.harmonics import fill_harmonics
-from skybake.luts.multiple import add_diffuse, group_rays
+from skybake.luts.multiple import add_diffuse, allocate_scratch, group_rays, side_by_side
 from skybake.optics.legendre import truncate_peaks
 from skybake.optics.medium import build_medium, pad_wavelengths
 from skybake.preset import load_preset
-from skybake.sky.pixels import fill_directions
+from skybake.sky.pixels import allocate_pixels, fill_directions
 from skybake.sky.sky import WAVELENGTHS
 from skybake.sky.sun import fill_sight_columns
 from skybake.sky.view import SkyView
+from skybake.transport.beside import compile_beside
 from skybake.transport.cache import is_warm
-from skybake.transport.kernel import compile_beside
 from skybake.transport.samples import allocate_samples
 
 KERNELS = (fill_harmonics, add_diffuse, fill_sight_columns, fill_directions)
@@ -43,13 +43,15 @@ def compile_kernels() -> None:
     fill_harmonics(field.harmonics, 0.0, np.empty(field.harmonics.degree.size))
     light = np.zeros((0, cut.medium.ground_albedo.size), np.float32)
     rays = group_rays(np.zeros((1, 4)))
-    add_diffuse(field, cut.medium, rays, 0, 0, allocate_samples(cut.medium), light)
+    samples, scratch = allocate_samples(cut.medium), allocate_scratch(field, rays)
+    add_diffuse(field, side_by_side(field), cut.medium, rays, 0, 0, samples, scratch, light)
     table, mu = np.zeros((1, 1, 1)), np.zeros(0)
     columns, visible = np.zeros((0, seen.density.shape[1])), np.zeros(0, np.bool_)
     fill_sight_columns(seen, table, seen.r_bottom, mu, columns, visible)
     view = SkyView(0.0, 1.5, 1.0, np.zeros((2, 4, 4, 3), np.float32), np.zeros((2, 1), np.float32))
     pixels = np.zeros((0, 1, 3), np.float32)
-    fill_directions(view, np.zeros((1, 1)), np.zeros((1, 1)), 1.0, 0, 0, pixels)
+    place = np.zeros((1, 1))
+    fill_directions(view, place, place, 1.0, 0, 0, allocate_pixels(view, 1), pixels)
 
 
 if __name__ == "__main__":

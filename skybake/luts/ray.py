@@ -8,12 +8,14 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.luts.field import DiffuseField
-from skybake.luts.multiple import add_diffuse, group_rays
+from skybake.luts.multiple import add_diffuse, allocate_scratch, group_rays, side_by_side
 from skybake.luts.single import add_single_scattering
+from skybake.luts.sunlit import allocate_sunlit
 from skybake.optics.legendre import PEAK_NODES, Truncation
 from skybake.optics.medium import Array
-from skybake.transport.kernel import run_rows
+from skybake.transport.arguments import flatten
 from skybake.transport.samples import allocate_samples
+from skybake.transport.threads import run_rows
 from skybake.transport.trace import MAX_ARC, trace
 
 
@@ -75,15 +77,21 @@ def trace_rays(
     diffuse = np.zeros((r.size, wavelengths), np.float32)
     fans = group_rays(np.stack([r, mu, mu_s, nu], axis=1))
 
+    starts, light = flatten(fans.starts), flatten(diffuse)
+    sources = [flatten(each) for each in (cut, PEAK_NODES, columns)]
+    medium, bundle, scattered = map(flatten, (cut.medium, fans, single))
+    moments = flatten(field), flatten(side_by_side(field))
+
     def work(begin: int, end: int) -> None:
-        samples = allocate_samples(cut.medium)
+        samples, scratch = allocate_samples(cut.medium), allocate_scratch(field, fans)
         while begin < end:
-            stop = trace(cut.medium, shells, max_arc, fans.starts, begin, end, samples)
-            batch = fans, begin, stop, samples
-            add_single_scattering(cut, PEAK_NODES, columns, *batch, single, diffuse)
+            stop = trace(medium, shells, max_arc, starts, begin, end, samples)
+            batch = bundle, begin, stop, samples
+            sunlit = allocate_sunlit(cut.medium, int(samples.number[: stop - begin].max()))
+            add_single_scattering(*sources, *batch, sunlit, scattered, light)
             # A field on less than two altitudes is none.
             if field.altitude.size > 1:
-                add_diffuse(field, cut.medium, *batch, diffuse)
+                add_diffuse(*moments, medium, *batch, scratch, light)
             begin = stop
 
     run_rows(len(fans.starts), work, chunk=max(1, len(fans.starts) // 32))

@@ -6,14 +6,14 @@ import math
 
 import numpy as np
 
-from skybake.luts.sunlit import SPARE, Sunlit, gather_sunlit
+from skybake.luts.sunlit import gather_sunlit
 from skybake.luts.transmittance import fill_sun_column, fill_transmittance
 from skybake.transport.exponential import fast_exp32
-from skybake.transport.kernel import inner_kernel, kernel
+from skybake.transport.kernel import kernel
 
 
 @kernel
-def add_single_scattering(cut, nodes, columns, fans, begin, end, samples, single, ground):
+def add_single_scattering(cut, nodes, columns, fans, begin, end, samples, lit, single, ground):
     """Add the sunlight that reaches the samples of rays and the ground at their ends.
 
     Parameters
@@ -28,6 +28,8 @@ def add_single_scattering(cut, nodes, columns, fans, begin, end, samples, single
         The rays.
     begin, end, samples
         Fans, and the result of `trace` for their starts, in the truncated medium.
+    lit : Sunlit
+        Work space.
     single : ndarray of float64, shape (ray, channel, wavelength)
         Receives, per unit irradiance, what the phase functions of the channels
         multiply; see `skybake.optics.legendre.Truncation`.
@@ -35,19 +37,7 @@ def add_single_scattering(cut, nodes, columns, fans, begin, end, samples, single
         Receives the radiance of the ground per unit irradiance. [sr⁻¹]
     """
     constituents, wavelengths = cut.medium.extinction.shape
-    most = np.int64(SPARE)
-    for fan in range(end - begin):
-        most = max(most, samples.number[fan] + SPARE)
-    lit = Sunlit(
-        np.empty((constituents, most), np.float32),
-        np.empty((constituents, most), np.float32),
-        np.empty((constituents, most), np.float32),
-        np.empty((wavelengths, most), np.float32),
-        np.empty(constituents),
-    )
-    depth, light = np.empty(most, np.float32), np.empty(most, np.float32)
-    filled = np.empty(most, np.float32)
-    through = np.empty(wavelengths)
+    depth, light, filled = lit.depth, lit.light, lit.filled
     for fan in range(begin, end):
         first, length = samples.first[fan - begin], samples.length[fan - begin]
         last = first + samples.number[fan - begin]
@@ -72,12 +62,12 @@ def add_single_scattering(cut, nodes, columns, fans, begin, end, samples, single
                     length,
                     behind,
                     lit.column,
-                    through,
+                    lit.through,
                     ground[i],
                 )
 
 
-@inner_kernel
+@kernel
 def _fill_light(cut, k, count, lit, depth, light):
     """Write the share of sunlight that arrives by way of each sample times its weight."""
     for n in range(count):
@@ -89,7 +79,7 @@ def _fill_light(cut, k, count, lit, depth, light):
         light[n] = weight[n] * fast_exp32(-depth[n])
 
 
-@inner_kernel
+@kernel
 def _split_peak(cut, k, count, lit, depth, light, filled):
     """Keep of the light what was scattered within peaks only; how far they have filled.
 
@@ -109,7 +99,7 @@ def _split_peak(cut, k, count, lit, depth, light, filled):
         filled[n] = np.float32(1.0) - fast_exp32(-filled[n])
 
 
-@inner_kernel
+@kernel
 def _add_peak(cut, nodes, k, count, lit, light, filled, out):
     """Share each sample's light between the channels of the two nodes around `filled`."""
     constituents = cut.fraction.shape[0]
@@ -130,14 +120,14 @@ def _add_peak(cut, nodes, k, count, lit, light, filled, out):
         out[channel, k] += total
 
 
-@inner_kernel
+@kernel
 def _add_scaled(count, factor, values, out):
     single = np.float32(factor)
     for n in range(count):
         out[n] += single * values[n]
 
 
-@inner_kernel
+@kernel
 def _sum_products(count, a, b):
     total = np.float32(0.0)
     for n in range(count):
@@ -145,7 +135,7 @@ def _sum_products(count, a, b):
     return total
 
 
-@inner_kernel
+@kernel
 def _sum_ramps(count, a, b, x, low, high):
     """Sum of products weighted 0 where `x` is below `low`, 1 above `high`, linear between."""
     slope, shift = np.float32(1.0 / (high - low)), np.float32(low / (high - low))
@@ -155,7 +145,7 @@ def _sum_ramps(count, a, b, x, low, high):
     return total
 
 
-@inner_kernel
+@kernel
 def _add_ground(medium, columns, ray, length, transmittance, column, light, out):
     """Add the ground at the end of a ray as the sun alone lights it, shape (wavelength,)."""
     mu_s = (ray[0] * ray[2] + length * ray[3]) / medium.r_bottom

@@ -19,13 +19,14 @@ from skybake.luts.grid import (
     project,
     vertical_depth,
 )
-from skybake.luts.multiple import Fans, add_diffuse, group_rays
+from skybake.luts.multiple import Fans, add_diffuse, allocate_scratch, group_rays, side_by_side
 from skybake.luts.ray import trace_rays
 from skybake.optics.legendre import Truncation, legendre_polynomials
 from skybake.optics.medium import Array
-from skybake.transport.kernel import run_rows
+from skybake.transport.arguments import flatten
 from skybake.transport.samples import Samples, allocate_samples
 from skybake.transport.shells import altitude_shells
+from skybake.transport.threads import run_rows
 from skybake.transport.trace import trace
 
 FIRST_SHELLS = 15
@@ -239,10 +240,12 @@ def _scatter(
     """Scatter a field once more and transport it; the ground reflects its irradiance."""
     nodes, rays, wavelengths = grid.altitude.size, math.prod(_shape(grid)), field.ground.shape[1]
     out = np.zeros((nodes, rays, wavelengths), np.float32)
+    light = [flatten(each) for each in (field, side_by_side(field), cut.medium)]
 
     def work(first: int, last: int) -> None:
         for batch in batches[first:last]:
-            add_diffuse(field, cut.medium, *batch[1:], out[batch.node])
+            scratch = allocate_scratch(field, batch.fans)
+            add_diffuse(*light, *batch[1:], scratch, out[batch.node])
 
     run_rows(len(batches), work)
     scattered = field._replace(

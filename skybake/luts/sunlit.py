@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from skybake.luts.transmittance import fill_sun_column
+from skybake.optics.medium import Array, Medium
 from skybake.transport.density import GAUSS_LOW, fill_density
 from skybake.transport.geometry import radius_at, shadow_interval
-from skybake.transport.kernel import inner_kernel
+from skybake.transport.kernel import kernel
 
 SPARE = 4
 """Samples by which a ray can outgrow its fan: the shadow cuts two steps at most."""
@@ -30,18 +31,41 @@ class Sunlit(NamedTuple):
         Relative densities.
     weight : ndarray of float32, shape (wavelength, sample)
         As in `Samples`. [km]
-    column : ndarray of float64, shape (constituent,)
-        Scratch.
+    depth, light, filled : ndarray of float32, shape (sample,)
+        Scratch for one wavelength.
+    column, through : ndarray of float64, shape (constituent,) and (wavelength,)
+        Scratch for one sample.
     """
 
     sunward: npt.NDArray[np.float32]
     backward: npt.NDArray[np.float32]
     density: npt.NDArray[np.float32]
     weight: npt.NDArray[np.float32]
-    column: npt.NDArray[np.floating[Any]]
+    depth: npt.NDArray[np.float32]
+    light: npt.NDArray[np.float32]
+    filled: npt.NDArray[np.float32]
+    column: Array
+    through: Array
 
 
-@inner_kernel
+def allocate_sunlit(medium: Medium, samples: int) -> Sunlit:
+    """Make the work space for rays of at most so many samples; each thread needs its own."""
+    constituents, wavelengths = medium.extinction.shape
+    most = samples + SPARE
+    return Sunlit(
+        sunward=np.empty((constituents, most), np.float32),
+        backward=np.empty((constituents, most), np.float32),
+        density=np.empty((constituents, most), np.float32),
+        weight=np.empty((wavelengths, most), np.float32),
+        depth=np.empty(most, np.float32),
+        light=np.empty(most, np.float32),
+        filled=np.empty(most, np.float32),
+        column=np.empty(constituents),
+        through=np.empty(wavelengths),
+    )
+
+
+@kernel
 def gather_sunlit(medium, columns, ray, samples, first, last, length, out):
     """Collect what of a fan's samples the sun reaches along one of its rays.
 

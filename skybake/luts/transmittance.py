@@ -16,27 +16,27 @@ from skybake.optics.medium import Medium
 from skybake.transport.density import fill_column
 from skybake.transport.exponential import fast_exp
 from skybake.transport.geometry import distance_to_exit
-from skybake.transport.kernel import inner_kernel, kernel, run_rows
+from skybake.transport.kernel import kernel
+from skybake.transport.threads import run_rows
 
 SHAPE = (256, 256)
 BUILD_STEPS = 48
 
 
-@inner_kernel
+@kernel
 def altitude_mu_from_unit(r_bottom, r_top, x_altitude, x_mu):
     """Altitude [km] and cosine of the zenith angle of a place in the table's unit square."""
     return x_altitude * x_altitude * (r_top - r_bottom), x_mu * x_mu
 
 
-@inner_kernel
+@kernel
 def unit_from_altitude_mu(r_bottom, r_top, h, mu):
     """Inverse of `altitude_mu_from_unit`, for upward directions (mu >= 0)."""
     return math.sqrt(min(max(h / (r_top - r_bottom), 0.0), 1.0)), math.sqrt(min(max(mu, 0.0), 1.0))
 
 
 @kernel
-def _fill(medium, steps, first, last, out):
-    scratch = np.empty(out.shape[2])
+def _fill(medium, steps, first, last, scratch, out):
     for i in range(first, last):
         for j in range(out.shape[1]):
             h, mu = altitude_mu_from_unit(
@@ -67,12 +67,17 @@ def build_columns(
     ndarray of float64, shape (altitude, mu, constituent)
         Column of relative density. [km]
     """
-    out = np.empty((*shape, medium.extinction.shape[0]))
-    run_rows(shape[0], lambda first, last: _fill(medium, steps, first, last, out), chunk=8)
+    constituents = medium.extinction.shape[0]
+    out = np.empty((*shape, constituents))
+
+    def work(first: int, last: int) -> None:
+        _fill(medium, steps, first, last, np.empty(constituents), out)
+
+    run_rows(shape[0], work, chunk=8)
     return out
 
 
-@inner_kernel
+@kernel
 def _add_upward(columns, r_bottom, r_top, h, mu, factor, out):
     """Add `factor` times the interpolated column toward an upward direction to `out`."""
     x_altitude, x_mu = unit_from_altitude_mu(r_bottom, r_top, h, mu)
@@ -88,7 +93,7 @@ def _add_upward(columns, r_bottom, r_top, h, mu, factor, out):
         out[c] += factor * (low + u * (high - low))
 
 
-@inner_kernel
+@kernel
 def fill_sun_column(columns, r_bottom, r_top, r, mu_s, out):
     """Write the columns from a point toward the sun to `out`.
 
@@ -127,7 +132,7 @@ def fill_sun_column(columns, r_bottom, r_top, r, mu_s, out):
     return True
 
 
-@inner_kernel
+@kernel
 def fill_transmittance(extinction, column, out):
     """Write exp(-optical depth) of a column to `out`, shape (wavelength,)."""
     for k in range(out.size):

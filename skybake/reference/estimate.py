@@ -15,7 +15,7 @@ from skybake.reference.guide import Guide, make_guide
 from skybake.reference.paths import mean_irradiance, mean_radiance
 from skybake.reference.rays import transmittance_to_space
 from skybake.reference.single import single_radiance
-from skybake.transport.kernel import run_rows
+from skybake.transport.threads import run_rows
 
 Array = npt.NDArray[np.float64]
 Direction = tuple[float, float, float]

@@ -22,7 +22,7 @@ from skybake.reference.rays import (
     tangent_altitude,
     transmittance_to_space,
 )
-from skybake.transport.kernel import shared_kernel
+from skybake.transport.shared_kernel import shared_kernel
 
 ALTITUDES = 17
 SUNS = 97

@@ -16,7 +16,7 @@ from skybake.reference.rays import (
     trace,
     transmittance_to_space,
 )
-from skybake.transport.kernel import shared_kernel
+from skybake.transport.shared_kernel import shared_kernel
 
 LONGEST_PIECE = 1e-3
 """Of the planet's radius: 6 km on Earth, over which the sun sinks by 0.06 deg."""

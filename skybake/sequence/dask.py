@@ -18,7 +18,7 @@ from skybake.sequence.frame import Look, Outcome, finish_frame
 from skybake.sequence.plan import Frame, Plan
 from skybake.sequence.pool import Done, Run
 from skybake.sky.sky import Sky
-from skybake.transport.kernel import stay_in_thread
+from skybake.transport.threads import stay_in_thread
 from skybake.version import __version__
 
 CONNECT_WITHIN = 6

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 from skybake.sequence.frame import Look, Outcome, finish_frame
 from skybake.sequence.plan import Frame, Plan
-from skybake.transport.kernel import lone_threads, thread_count
+from skybake.transport.threads import lone_threads, thread_count
 
 Done = tuple[Frame, Outcome | Exception]
 Run = Callable[[Sequence[Frame]], Iterator[Done]]

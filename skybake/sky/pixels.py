@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
-from skybake.sky.view import dusk_coordinate, sun_range
-from skybake.transport.kernel import inner_kernel, kernel
+from skybake.optics.medium import Array
+from skybake.sky.view import SkyView, dusk_coordinate, sun_range
+from skybake.transport.kernel import kernel
 
 
-@inner_kernel
+@kernel
 def _cubic(x, size, out):
     """Catmull-Rom weights of four nodes around `x`; returns the first, which may be -1."""
     i = min(max(int(x), 0), size - 2)
@@ -22,7 +25,7 @@ def _cubic(x, size, out):
     return i - 1
 
 
-@inner_kernel
+@kernel
 def _keep_inside(i, size, out):
     """Let a parabola stand for the node beyond either end; returns the first node, in 0..size-4."""
     if i < 0:
@@ -38,7 +41,7 @@ def _keep_inside(i, size, out):
     return i
 
 
-@inner_kernel
+@kernel
 def _azimuth_weights(view, theta, phi, cosine, out):
     """Weights of four azimuths; returns the row of `_fill_latitude` that holds the first."""
     size = view.table.shape[2]
@@ -49,7 +52,7 @@ def _azimuth_weights(view, theta, phi, cosine, out):
     return _keep_inside(_cubic(x * (size - 1), size, out), size, out) + 1
 
 
-@inner_kernel
+@kernel
 def _latitude_weights(view, side, zenith, out):
     """Weights of four latitudes; at a table's edge the missing node is extrapolated."""
     size = view.table.shape[1]
@@ -62,7 +65,7 @@ def _latitude_weights(view, side, zenith, out):
     return _keep_inside(_cubic(x * (size - 1), size, out), size, out)
 
 
-@inner_kernel
+@kernel
 def _fill_latitude(view, side, zenith, j_first, j_last, weights, out):
     """Interpolate the table at one zenith angle into rows of `out`, (azimuth + 2, channel).
 
@@ -82,7 +85,7 @@ def _fill_latitude(view, side, zenith, j_first, j_last, weights, out):
             here[k] = a * at_a[k] + b * at_b[k] + c * at_c[k] + d * at_d[k]
 
 
-@inner_kernel
+@kernel
 def _fill_places(view, middle, cosine, out):
     """Write where in the lobes' curves pixels lie: scattering angles as floating indices."""
     half = np.float32(0.5 * (view.curves.shape[0] - 1))
@@ -96,7 +99,7 @@ def _fill_places(view, middle, cosine, out):
         out[j] = x if near < far else half + half - x
 
 
-@inner_kernel
+@kernel
 def _add_pixels(view, latitude, first, weights, share, place, out):
     """Add `share` of the radiance of pixels to `out`, shape (pixel, 3).
 
@@ -121,8 +124,59 @@ def _add_pixels(view, latitude, first, weights, share, place, out):
         out[j, 2] += scale * blue
 
 
+class PixelScratch(NamedTuple):
+    """Work space of `fill_directions`; each thread needs its own.
+
+    Attributes
+    ----------
+    latitude : ndarray of float32, shape (side, azimuth + 2, 3 * lobe)
+        The table at one zenith angle, above the horizon and below it.
+    by_lobe : ndarray of float32, shape (side, azimuth + 2, 3, lobe)
+        The same numbers.
+    row, weights : ndarray, shape (side, column) and (side, column, 4)
+        Where between azimuths of the table pixels lie.
+    angle, cosine, place : ndarray, shape (column,)
+        Angles from the sun's azimuth, and where in the lobes' curves pixels lie.
+    theta, share, has_weights : ndarray, shape (side,)
+        How a row of pixels is split, and whether it can keep weights for the next.
+    four : ndarray of float64, shape (4,)
+        Weights of one place.
+    """
+
+    latitude: npt.NDArray[np.float32]
+    by_lobe: npt.NDArray[np.float32]
+    row: npt.NDArray[np.int64]
+    weights: npt.NDArray[np.float32]
+    angle: Array
+    cosine: Array
+    place: npt.NDArray[np.float32]
+    theta: Array
+    share: Array
+    has_weights: npt.NDArray[np.bool_]
+    four: Array
+
+
+def allocate_pixels(view: SkyView, columns: int) -> PixelScratch:
+    """Make the work space for rows of so many pixels."""
+    azimuths, channels = view.table.shape[2:]
+    latitude = np.empty((2, azimuths + 2, channels), np.float32)
+    return PixelScratch(
+        latitude=latitude,
+        by_lobe=latitude.reshape(2, azimuths + 2, 3, channels // 3),
+        row=np.empty((2, columns), np.int64),
+        weights=np.empty((2, columns, 4), np.float32),
+        angle=np.empty(columns),
+        cosine=np.empty(columns),
+        place=np.empty(columns, np.float32),
+        theta=np.empty(2),
+        share=np.empty(2),
+        has_weights=np.empty(2, np.bool_),
+        four=np.empty(4),
+    )
+
+
 @kernel
-def fill_directions(view, zenith, azimuth, height, first, last, out):
+def fill_directions(view, zenith, azimuth, height, first, last, scratch, out):
     """Evaluate a sky at pixels.
 
     Parameters
@@ -138,19 +192,20 @@ def fill_directions(view, zenith, azimuth, height, first, last, out):
         its air are smoothed by the share of the pixel on either side. [rad]
     first, last : int
         Rows to fill.
+    scratch : PixelScratch
+        Work space.
     out : ndarray of float32, shape (last - first, column, 3)
         Receives RGB.
     """
-    azimuths, channels = view.table.shape[2], view.table.shape[3]
-    columns = out.shape[1]
-    latitude = np.empty((2, azimuths + 2, channels), np.float32)
-    by_lobe = latitude.reshape((2, azimuths + 2, 3, channels // 3))
-    angle, cosine, place = np.empty(columns), np.empty(columns), np.empty(columns, np.float32)
-    row, weights = np.empty((2, columns), np.int64), np.empty((2, columns, 4), np.float32)
-    theta, share, four = np.empty(2), np.zeros(2), np.empty(4)
+    azimuths, columns = view.table.shape[2], out.shape[1]
+    latitude, by_lobe = scratch.latitude, scratch.by_lobe
+    angle, cosine, place = scratch.angle, scratch.cosine, scratch.place
+    row, weights = scratch.row, scratch.weights
+    theta, share, four = scratch.theta, scratch.share, scratch.four
+    has_weights = scratch.has_weights
+    has_weights[:] = False
     shares_zenith, shares_azimuth = zenith.shape[1] == 1, azimuth.shape[0] == 1
     keeps_weights = shares_zenith and shares_azimuth and view.zenith_first == 0.0
-    has_weights = np.zeros(2, np.bool_)
     is_mirrored = False
     for i in range(first, last):
         if i == first or not shares_azimuth:
@@ -195,7 +250,7 @@ def fill_directions(view, zenith, azimuth, height, first, last, out):
         _mirror(out[i - first], computed)
 
 
-@inner_kernel
+@kernel
 def _fill_angles(azimuth, angle, cosine):
     """Angles from the sun's azimuth, 0 to pi; whether they are the same from right to left."""
     for j in range(angle.size):
@@ -208,7 +263,7 @@ def _fill_angles(azimuth, angle, cosine):
     return difference < 1e-12
 
 
-@inner_kernel
+@kernel
 def _mirror(pixels, computed):
     """Copy the first pixels of a row to the others, in reverse."""
     for j in range(computed, pixels.shape[0]):
@@ -216,7 +271,7 @@ def _mirror(pixels, computed):
             pixels[j, k] = pixels[pixels.shape[0] - 1 - j, k]
 
 
-@inner_kernel
+@kernel
 def _split_pixel(view, theta, height, middle, share):
     """Shares of a pixel above and below the horizon, and the zenith angle of each's middle."""
     low, high = theta - 0.5 * height, theta + 0.5 * height

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.optics.medium import Array
-from skybake.transport.kernel import inner_kernel
+from skybake.transport.kernel import kernel
 
 Table = npt.NDArray[np.float32]
 
@@ -144,7 +144,7 @@ def _dusk_azimuths(sun_zenith: float, zenith_horizon: float, zenith: Array, azim
     return azimuth
 
 
-@inner_kernel
+@kernel
 def sun_range(sun_zenith, zenith_horizon, zenith):
     """Cosine of the sun's zenith angle where views of a zenith angle end: middle and half range.
 
@@ -161,7 +161,7 @@ def sun_range(sun_zenith, zenith_horizon, zenith):
     return math.cos(sun_zenith) * along, math.sin(sun_zenith) * across
 
 
-@inner_kernel
+@kernel
 def dusk_coordinate(middle, half, cosine):
     """Share of the way from the sun's azimuth to the opposite one, stretched at the terminator."""
     if half < LEAST_RANGE:

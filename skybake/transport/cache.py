@@ -17,7 +17,7 @@ import warnings
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
-from importlib.metadata import version
+from importlib.util import find_spec
 from pathlib import Path
 
 from skybake.version import __version__
@@ -29,7 +29,7 @@ KERNEL_SUFFIX = ".kernel"
 TABLES_FOLDER = "atmospheres"
 TABLES_SUFFIX = ".tables"
 
-_KERNEL_PACKAGES = ("optics", "transport", "luts", "sky", "projection", "reference")
+KERNEL_SOURCES = ("optics", "transport", "luts", "sky", "formats/half.py")
 _DIGEST_SIZE = hashlib.sha256().digest_size
 _PREFIX = "kernels-"
 _DAY = 86400.0
@@ -79,7 +79,7 @@ def cache_root() -> Path | None:
 def version_directory() -> Path | None:
     """Folder of this version, be it there or not; None without a home."""
     parent = cache_root()
-    return None if parent is None else parent / f"{_PREFIX}{_source_hash()}"
+    return None if parent is None else parent / f"{_PREFIX}{source_hash(*KERNEL_SOURCES)}"
 
 
 def is_warm() -> bool:
@@ -203,19 +203,30 @@ def _is_private(directory: Path) -> bool:
 
 
 @functools.cache
-def _source_hash() -> str:
+def source_hash(*sources: str) -> str:
     """Digest of what compiled kernels depend on beside the processor.
 
-    The sources, because numba does not notice an edit to a kernel that another file's
-    kernel calls (numba issue 9483).
+    That is what compiles them and some of our packages and modules, because numba does
+    not notice an edit to a kernel that another file's kernel calls (numba issue 9483).
     """
-    package = Path(__file__).parent.parent
-    made_by = (__version__, version("numba"), version("llvmlite"))
+    made_by = (__version__, *_installed("numba"), *_installed("llvmlite"))
     digest = hashlib.sha256(" ".join((*made_by, sys.implementation.cache_tag)).encode())
-    for name in _KERNEL_PACKAGES:
-        for source in sorted((package / name).glob("*.py")):
-            digest.update(source.read_bytes())
+    for path in (Path(__file__).parent.parent / source for source in sources):
+        for file in sorted(path.glob("*.py")) if path.is_dir() else [path]:
+            digest.update(file.read_bytes())
     return digest.hexdigest()[:16]
+
+
+def _installed(package: str) -> list[str]:
+    """Names under which a package's metadata lie, which tell its version.
+
+    Neither is the package imported, nor what importlib.metadata parses mail with, which
+    takes a fiftieth of a render.
+    """
+    spec = find_spec(package)
+    if spec is None or spec.origin is None:
+        return []
+    return sorted(path.name for path in Path(spec.origin).parent.parent.glob(f"{package}-*"))
 
 
 def _user_cache() -> Path | None:

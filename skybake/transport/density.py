@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from skybake.transport.geometry import radius_at
-from skybake.transport.kernel import inner_kernel
+from skybake.transport.kernel import kernel
 
 # Gauss-Legendre collocation with two points (Butcher tableau of the Gauss
 # method of order 4): points at GAUSS_LOW and 1 - GAUSS_LOW of a step, and the
@@ -16,7 +16,7 @@ GAUSS_FAR = 0.25 - math.sqrt(3.0) / 6.0
 GAUSS_NEAR = 0.25 + math.sqrt(3.0) / 6.0
 
 
-@inner_kernel
+@kernel
 def fill_density(density, r_bottom, r_top, h, out):
     """Write the relative density of every constituent at altitude `h` [km] to `out`."""
     last = density.shape[0] - 1
@@ -27,7 +27,7 @@ def fill_density(density, r_bottom, r_top, h, out):
         out[c] = density[i, c] + weight * (density[i + 1, c] - density[i, c])
 
 
-@inner_kernel
+@kernel
 def fill_column(medium, r, mu, length, steps, scratch, out):
     """Write the columns along a ray to `out`, by plain Gauss-Legendre steps.
 

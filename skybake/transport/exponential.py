@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from skybake.transport.kernel import inner_kernel
+from skybake.transport.kernel import kernel
 
 
-@inner_kernel
+@kernel
 def fast_exp(x):
     """Exponential of `x` up to 300 (taken as -300 below that), with a relative error below 8e-9.
 
@@ -36,7 +36,7 @@ _C5, _C6 = np.float32(1 / 120), np.float32(1 / 720)
 _HALF, _ONE, _LEAST = np.float32(0.5), np.float32(1.0), np.float32(-87.0)
 
 
-@inner_kernel
+@kernel
 def fast_exp32(x):
     """`fast_exp` in single precision, up to 87 and from -87, with a relative error below 3e-7."""
     x = max(x, _LEAST)

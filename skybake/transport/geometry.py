@@ -9,16 +9,16 @@ from __future__ import annotations
 
 import math
 
-from skybake.transport.kernel import inner_kernel
+from skybake.transport.kernel import kernel
 
 
-@inner_kernel
+@kernel
 def squared_closest_approach(r, mu):
     """Square of the distance between the planet's centre and the ray's line. [km²]"""
     return r * r * (1.0 - mu * mu)
 
 
-@inner_kernel
+@kernel
 def distance_to_exit(r, mu, r_top):
     """Distance at which a ray leaves the sphere `r_top`, or 0 if it misses it. [km]"""
     half_chord_squared = r_top * r_top - squared_closest_approach(r, mu)
@@ -27,7 +27,7 @@ def distance_to_exit(r, mu, r_top):
     return max(0.0, -r * mu + math.sqrt(half_chord_squared))
 
 
-@inner_kernel
+@kernel
 def distance_to_entry(r, mu, r_sphere):
     """Distance at which a ray from outside enters a sphere; inf if it misses it. [km]"""
     half_chord_squared = r_sphere * r_sphere - squared_closest_approach(r, mu)
@@ -36,13 +36,13 @@ def distance_to_entry(r, mu, r_sphere):
     return max(0.0, -r * mu - math.sqrt(half_chord_squared))
 
 
-@inner_kernel
+@kernel
 def radius_at(r, mu, t):
     """Radius of the point at distance `t` along the ray. [km]"""
     return math.sqrt(max(0.0, r * r + t * (t + 2.0 * r * mu)))
 
 
-@inner_kernel
+@kernel
 def shadow_interval(r, mu, mu_s, nu, r_bottom, t_first, t_last):
     """Part of a ray that lies in the planet's shadow.
 

@@ -9,7 +9,8 @@ import numpy as np
 from skybake.optics.medium import Array, Medium
 from skybake.transport.density import fill_density
 from skybake.transport.geometry import distance_to_entry, distance_to_exit, radius_at
-from skybake.transport.kernel import inner_kernel, kernel, run_rows
+from skybake.transport.kernel import kernel
+from skybake.transport.threads import run_rows
 from skybake.transport.trace import ray_limits
 
 VIEW_STEPS = 256
@@ -51,17 +52,17 @@ def march_rays(
     single = np.zeros((r.size, constituents, wavelengths))
     ground = np.zeros((r.size, wavelengths))
     rays = np.stack([r, mu, mu_s, nu], axis=1)
-    run_rows(
-        r.size,
-        lambda first, last: _march(
-            medium, rays, view_steps, light_steps, first, last, single, ground
-        ),
-        chunk=32,
-    )
+
+    def work(first: int, last: int) -> None:
+        steps = view_steps, light_steps
+        scratch = np.empty((2, constituents)), np.empty((2, wavelengths))
+        _march(medium, rays, *steps, first, last, *scratch, single, ground)
+
+    run_rows(r.size, work, chunk=32)
     return single, ground
 
 
-@inner_kernel
+@kernel
 def _add_depth(medium, r, mu, length, steps, density, depth):
     """Add the optical depth along a ray to `depth`, by midpoints; `density` is scratch."""
     for i in range(steps):
@@ -73,7 +74,7 @@ def _add_depth(medium, r, mu, length, steps, density, depth):
                 depth[k] += (high - low) * density[c] * medium.extinction[c, k]
 
 
-@inner_kernel
+@kernel
 def _edge(begin, lowest, end, share):
     """Distance after a share of the steps, which crowd quadratically at the lowest point."""
     before, after = math.sqrt(lowest - begin), math.sqrt(end - lowest)
@@ -82,11 +83,10 @@ def _edge(begin, lowest, end, share):
 
 
 @kernel
-def _march(medium, rays, view_steps, light_steps, first, last, single, ground):
+def _march(medium, rays, view_steps, light_steps, first, last, densities, depths, single, ground):
     constituents, wavelengths = medium.extinction.shape
-    density, scratch = np.empty(constituents), np.empty(constituents)
-    along = np.empty(wavelengths)
-    total = np.empty(wavelengths)
+    density, scratch = densities[0], densities[1]
+    along, total = depths[0], depths[1]
     for ray in range(first, last):
         r, mu, mu_s, nu = rays[ray, 0], rays[ray, 1], rays[ray, 2], rays[ray, 3]
         begin, end, hits_ground = ray_limits(medium, r, mu)
@@ -117,7 +117,8 @@ def _march(medium, rays, view_steps, light_steps, first, last, single, ground):
                     single[ray, c, k] += (high - low) * source * math.exp(-total[k])
         mu_s_ground = (r * mu_s + end * nu) / medium.r_bottom
         if hits_ground and mu_s_ground > 0.0:
-            total[:] = along
+            for k in range(wavelengths):
+                total[k] = along[k]
             to_top = distance_to_exit(medium.r_bottom, mu_s_ground, medium.r_top)
             _add_depth(medium, medium.r_bottom, mu_s_ground, to_top, light_steps, scratch, total)
             for k in range(wavelengths):

@@ -14,7 +14,7 @@ from skybake.transport.geometry import (
     radius_at,
     squared_closest_approach,
 )
-from skybake.transport.kernel import inner_kernel, kernel
+from skybake.transport.kernel import kernel
 from skybake.transport.samples import MAX_SAMPLES
 
 MAX_ARC = math.radians(0.5)
@@ -22,7 +22,7 @@ MAX_STEP_OPTICAL_DEPTH = 1.0
 OPAQUE = 1e-9
 
 
-@inner_kernel
+@kernel
 def ray_limits(medium, r, mu):
     """Where a ray enters and leaves the air, and whether it ends on the ground.
 
@@ -85,7 +85,7 @@ def trace(medium, shells, max_arc, rays, begin, end, samples):
     return i
 
 
-@inner_kernel
+@kernel
 def _trace_ray(medium, shells, max_arc, start, first, ray, samples):
     """Append the samples of one ray from `first` on; returns the next free one."""
     r, mu = start[0], start[1]
@@ -120,7 +120,7 @@ def _trace_ray(medium, shells, max_arc, start, first, ray, samples):
     return n
 
 
-@inner_kernel
+@kernel
 def _layer_at(shells, h, descending):
     """Index i such that `h`, or the point next to it along the ray, is in shells i..i+1."""
     i = 0
@@ -129,7 +129,7 @@ def _layer_at(shells, h, descending):
     return i
 
 
-@inner_kernel
+@kernel
 def _next_shell(shells, layer, descending, r_bottom, t_closest, closest_squared):
     """Distance of the next shell that the ray crosses, and the layer behind it."""
     if descending and layer == 0:
@@ -148,7 +148,7 @@ def _next_shell(shells, layer, descending, r_bottom, t_closest, closest_squared)
     return math.inf, layer
 
 
-@inner_kernel
+@kernel
 def _limit_depth(medium, r, mu, t, t_next, transmittance, scratch):
     """Shorten a step until no wavelength that still counts gains more than one depth."""
     # The density at the middle of a long step tells little of its start, hence the rounds.
@@ -169,7 +169,7 @@ def _limit_depth(medium, r, mu, t, t_next, transmittance, scratch):
     return t_next
 
 
-@inner_kernel
+@kernel
 def _add_step(medium, r, mu, t, step, n, samples, transmittance, column):
     """Append the two points of a step and return the largest transmittance behind it."""
     constituents, wavelengths = medium.extinction.shape

@@ -40,7 +40,7 @@ def test_kernels_of_a_process_that_failed_are_compiled_by_who_needs_them(tmp_pat
     script = """
 import numpy as np
 from skybake.luts.harmonics import build_harmonics, fill_harmonics
-from skybake.transport.kernel import compile_beside
+from skybake.transport.beside import compile_beside
 with compile_beside("skybake.no_such_module", frozenset({"fill_harmonics"})):
     fill_harmonics(build_harmonics(1), 0.5, out := np.empty(3))
 print(out[0] > 0.0)

@@ -5,10 +5,12 @@ import shutil
 import subprocess
 import sys
 import time
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
 
+import skybake
 from skybake.transport import cache
 
 SCRIPT = """
@@ -18,7 +20,16 @@ import numpy as np
 from skybake.luts.harmonics import build_harmonics, fill_harmonics
 before = is_warm()
 fill_harmonics(build_harmonics(2), 0.5, np.empty(6))
-print(cache_directory(), before, is_warm(), sum(fill_harmonics.stats.cache_hits.values()))
+print(cache_directory(), before, is_warm(), int("numba" not in sys.modules))
+"""
+
+
+LARGER = """
+import numpy as np
+from skybake import load_preset
+from skybake.luts.transmittance import build_columns
+from skybake.optics.medium import build_medium
+build_columns(build_medium(load_preset("earth"), np.array([550.0])), shape=(2, 2), steps=1)
 """
 
 
@@ -109,13 +120,13 @@ def test_other_platforms_keep_caches_where_they_are_used_to(
 
 
 @pytest.mark.parametrize("small_disk", ["size=64k,nr_inodes=64"], indirect=True)
-@pytest.mark.parametrize("room", [0, 8192])
+@pytest.mark.parametrize("room", [0, 4096])
 def test_on_a_full_disk_kernels_run_with_one_warning(small_disk, room):
     """Without any room, or with room for a part of a kernel."""
-    folder = small_disk / f"kernels-{cache._source_hash()}"
+    folder = small_disk / f"kernels-{cache.source_hash(*cache.KERNEL_SOURCES)}"
     folder.mkdir()
     (small_disk / "ballast").write_bytes(bytes(shutil.disk_usage(small_disk).free - room))
-    result = run(small_disk)
+    result = run(small_disk, script=LARGER + SCRIPT)
     assert result.stdout.split()[0] == str(folder)
     assert result.stdout.split()[-1] == "0"
     assert result.stderr.count("RuntimeWarning") == 1
@@ -127,9 +138,27 @@ def test_edit_to_any_kernel_source_changes_the_folder(tmp_path, monkeypatch):
     folder.mkdir(parents=True)
     (folder / "kernel.py").write_text("a = 1\n")
     monkeypatch.setattr(cache, "__file__", str(folder / "kernel.py"))
-    first = cache._source_hash.__wrapped__()
+    first = cache.source_hash.__wrapped__("transport")
     (folder / "kernel.py").write_text("a = 2\n")
-    assert cache._source_hash.__wrapped__() != first
+    assert cache.source_hash.__wrapped__("transport") != first
+
+
+def test_every_module_with_kernels_counts():
+    """Those of the path tracer are named where they are kept."""
+    package = Path(skybake.__file__).parent
+    modules = [path for path in package.rglob("*.py") if "\n@kernel\n" in path.read_text()]
+    assert len(modules) > 10
+    for path in modules:
+        module = path.relative_to(package)
+        assert {module.parts[0], module.as_posix()} & set(cache.KERNEL_SOURCES), module
+
+
+def test_another_version_of_the_compiler_changes_the_folder(monkeypatch):
+    first = cache.source_hash.__wrapped__("transport")
+    (name,) = cache._installed("numba")
+    assert name.startswith(f"numba-{version('numba')}.")
+    monkeypatch.setattr(cache, "_installed", lambda package: [f"{package}-0.0"])
+    assert cache.source_hash.__wrapped__("transport") != first
 
 
 def only_file(folder, suffix):
