@@ -1,5 +1,7 @@
 import hashlib
 import struct
+import subprocess
+import sys
 
 import numpy as np
 import OpenImageIO
@@ -144,3 +146,30 @@ def test_an_unknown_view_or_suffix_is_refused_with_the_known_ones(tmp_path):
 def test_a_preview_without_a_folder_is_refused(tmp_path):
     with pytest.raises(OutputError, match="folder must exist, got"):
         write_preview(tmp_path / "missing" / "a.png", sky(), REC709, gain=1.0)
+
+
+SHORT_OF_MEMORY = """
+import resource
+import sys
+from pathlib import Path
+import numpy as np
+from skybake.colour.space import find_colour_space
+from skybake.formats.preview import write_preview
+pixels = np.ones((2048, 4096, 3), np.float32)
+used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (used + pixels.nbytes // 2, -1))
+try:
+    write_preview(Path(sys.argv[1]), pixels, find_colour_space("lin_rec709"), gain=1.0)
+except MemoryError:
+    print("told")
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="memory is limited and measured as on Linux")
+def test_a_lack_of_memory_is_told_and_does_not_end_the_process(tmp_path):
+    """OpenImageIO 3.2 divides by zero where it cannot copy pixels."""
+    arguments = [sys.executable, "-c", SHORT_OF_MEMORY, str(tmp_path / "a.png")]
+    environment = {"PYTHONPATH": ":".join(sys.path)}
+    result = subprocess.run(arguments, env=environment, capture_output=True, text=True, check=False)
+    assert (result.returncode, result.stdout) == (0, "told\n")
+    assert listing(tmp_path) == []
