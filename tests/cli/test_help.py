@@ -34,7 +34,9 @@ except SystemExit as end:
 
 
 def _commands(group, path=()):
-    for name, command in group.commands.items():
+    context = click.Context(group)
+    for name in group.list_commands(context):
+        command = group.get_command(context, name)
         if isinstance(command, click.Group):
             yield from _commands(command, (*path, name))
         else:
@@ -69,6 +71,19 @@ def test_help_presets_and_usage_faults_load_nothing_heavy(arguments):
     assert not HEAVY & set(modules), errors
     # A bare interpreter with click has about 150 of them; numpy alone adds 130.
     assert len(modules) < 230
+
+
+def test_a_command_loads_no_other(tmp_path):
+    """Nor what compiles, where its kernels are on disk already."""
+    arguments = ("render", "--size", "64x32", "-q", "-o", str(tmp_path / "sky.exr"))
+    for _ in range(2):
+        _, output, _ = run(*arguments, code=AFTER)
+    modules = json.loads(output.splitlines()[-1])[1]
+    assert not {"numba", "scipy", "colour", "ephem"} & set(modules)
+    commands = {name.removeprefix("skybake.commands.") for name in modules}
+    assert not {"sequence", "presets", "preview", "probe", "cache"} & commands
+    # click, numpy, OpenImageIO and llvmlite have some 265 of them; numba would add 260.
+    assert len(modules) < 440
 
 
 def test_choices_are_those_of_the_engine():
