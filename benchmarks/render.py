@@ -27,6 +27,7 @@ import numpy, numba
 import OpenImageIO as oiio
 source = oiio.ImageBuf(sys.argv[1])
 spec = oiio.ImageSpec(source.spec())
+spec["compression"] = "zip:2"
 pixels = source.get_pixels(oiio.HALF)
 import time, resource
 begin, used = time.perf_counter(), resource.getrusage(resource.RUSAGE_SELF).ru_utime

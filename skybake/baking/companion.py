@@ -12,7 +12,7 @@ from contextlib import AbstractContextManager, nullcontext
 import numpy as np
 
 from skybake.luts.grid import ORDER, empty_field, sun_angles
-from skybake.luts.harmonics import fill_harmonics
+from skybake.luts.harmonics import fill_each, harmonics_at
 from skybake.luts.multiple import add_diffuse, allocate_scratch, group_rays, side_by_side
 from skybake.optics.legendre import truncate_peaks
 from skybake.optics.medium import build_medium, pad_wavelengths
@@ -25,7 +25,7 @@ from skybake.transport.beside import compile_beside
 from skybake.transport.cache import is_warm
 from skybake.transport.samples import allocate_samples
 
-KERNELS = (fill_harmonics, add_diffuse, fill_sight_columns, fill_directions)
+KERNELS = (fill_each, add_diffuse, fill_sight_columns, fill_directions)
 
 
 def beside() -> AbstractContextManager[None]:
@@ -40,7 +40,7 @@ def compile_kernels() -> None:
     seen = build_medium(load_preset("earth"), WAVELENGTHS)
     cut = truncate_peaks(pad_wavelengths(seen), ORDER)
     field = empty_field(cut, np.array([0.0, 1.0]), sun_angles(2.0), ORDER)
-    fill_harmonics(field.harmonics, 0.0, np.empty(field.harmonics.degree.size))
+    harmonics_at(field.harmonics, np.zeros(1))
     light = np.zeros((0, cut.medium.ground_albedo.size), np.float32)
     rays = group_rays(np.zeros((1, 4)))
     samples, scratch = allocate_samples(cut.medium), allocate_scratch(field, rays)

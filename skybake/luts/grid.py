@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.luts.field import DiffuseField, altitude_layers, sun_bins, sun_factors
-from skybake.luts.harmonics import build_harmonics, fill_harmonics
+from skybake.luts.harmonics import build_harmonics, harmonics_at
 from skybake.optics.legendre import Truncation
 from skybake.optics.medium import Array, altitude_nodes
 from skybake.transport.shells import altitude_shells
@@ -152,9 +152,7 @@ def project(
     field : DiffuseField
         Receives the moments.
     """
-    polar = np.empty((grid.mu.shape[1], field.harmonics.degree.size))
-    for a, mu in enumerate(grid.mu[i]):
-        fill_harmonics(field.harmonics, mu, polar[a])
+    polar = harmonics_at(field.harmonics, grid.mu[i])
     around = np.cos(np.outer(field.harmonics.azimuthal, grid.azimuth))
     around *= 2.0 * math.pi / grid.azimuth.size
     basis = (polar * grid.weight[i][:, None]).T[:, :, None] * around[:, None, :]

@@ -52,6 +52,20 @@ def _factors(degree: int, m: int) -> tuple[float, float]:
     return scale, scale * math.sqrt((below**2 - m**2) / (4 * below**2 - 1))
 
 
+def harmonics_at(harmonics: Harmonics, mu: Array) -> Array:
+    """Nlm * Plm of several mu, shape (mu, harmonic)."""
+    out = np.empty((mu.size, harmonics.degree.size))
+    fill_each(harmonics, mu, out)
+    return out
+
+
+@kernel
+def fill_each(harmonics, mu, out):
+    """Call `fill_harmonics` for each mu, shape (mu,)."""
+    for i in range(mu.size):
+        fill_harmonics(harmonics, mu[i], out[i])
+
+
 @kernel
 def fill_harmonics(harmonics, mu, out):
     """Write Nlm * Plm(mu) to `out`, shape (harmonic,); times cos(m phi) they are Y_lm."""

@@ -36,7 +36,7 @@ def unit_from_altitude_mu(r_bottom, r_top, h, mu):
 
 
 @kernel
-def _fill(medium, steps, first, last, scratch, out):
+def _fill_columns(medium, steps, first, last, scratch, out):
     for i in range(first, last):
         for j in range(out.shape[1]):
             h, mu = altitude_mu_from_unit(
@@ -71,7 +71,7 @@ def build_columns(
     out = np.empty((*shape, constituents))
 
     def work(first: int, last: int) -> None:
-        _fill(medium, steps, first, last, np.empty(constituents), out)
+        _fill_columns(medium, steps, first, last, np.empty(constituents), out)
 
     run_rows(shape[0], work, chunk=8)
     return out

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import struct
 from typing import Any
 
 import numpy as np
@@ -63,9 +62,9 @@ def flatten_all(arguments: tuple[Any, ...]) -> tuple[tuple[Kind, ...], list[int 
     return tuple(kinds), words
 
 
-def word_format(kinds: tuple[Kind, ...]) -> struct.Struct:
-    """How the words of arguments are laid out in memory."""
-    return struct.Struct("=" + "".join(_letters(kind) for kind in kinds))
+def word_letters(kinds: tuple[Kind, ...]) -> str:
+    """Return the letters by which `struct` packs the words of arguments."""
+    return "".join(_letters(kind) for kind in kinds)
 
 
 def _letters(kind: Kind) -> str:

@@ -37,7 +37,9 @@ def linkable(function: Callable[..., Any]) -> Any:
     return numba.njit(**options)(function)
 
 
-def compile_kernel(dispatcher: Any, symbol: str, arguments: tuple[Any, ...]) -> MachineCode:
+def compile_kernel(
+    dispatcher: Any, symbol: str, arguments: tuple[Any, ...], layout: str
+) -> MachineCode:
     """Compile a kernel for the types of arguments.
 
     Parameters
@@ -48,6 +50,8 @@ def compile_kernel(dispatcher: Any, symbol: str, arguments: tuple[Any, ...]) -> 
         Name of the entry, of its own in every process that links it.
     arguments : tuple
         As `skybake.transport.arguments.flatten` takes them.
+    layout : str
+        Their words, q for whole numbers and addresses, d for floats.
 
     Returns
     -------
@@ -58,7 +62,7 @@ def compile_kernel(dispatcher: Any, symbol: str, arguments: tuple[Any, ...]) -> 
     with global_compiler_lock, _without_emission(), _without_collection():
         dispatcher.compile(signature)
     compiled = dispatcher.overloads[signature]
-    module = llvm.parse_assembly(str(_entry(compiled, symbol)))
+    module = llvm.parse_assembly(str(_entry(compiled, symbol, layout)))
     module.link_in(compiled.library._get_module_for_linking(), preserve=True)
     for function in module.functions:
         if not function.is_declaration and function.name != symbol:
@@ -124,7 +128,7 @@ def _without_collection() -> Iterator[None]:
             gc.enable()
 
 
-def _entry(compiled: Any, symbol: str) -> ir.Module:
+def _entry(compiled: Any, symbol: str, layout: str) -> ir.Module:
     """Make a C function that takes a compiled function's arguments from a row of words."""
     context, descriptor = compiled.target_context, compiled.fndesc
     module = context.codegen()._create_empty_module(symbol)
@@ -133,6 +137,9 @@ def _entry(compiled: Any, symbol: str) -> ir.Module:
     words, result = entry.args
     builder = ir.IRBuilder(entry.append_basic_block())
     packer = context.get_arg_packer(descriptor.argtypes)
+    expected = ("d" if isinstance(kind, ir.DoubleType) else "q" for kind in packer.argument_types)
+    if "".join(expected) != layout:
+        raise TypeError(f"{symbol}: numba must lay out its arguments as we do, got another way")
     flat = [
         builder.load(builder.bitcast(builder.gep(words, [_WORD(i)]), kind.as_pointer()))
         for i, kind in enumerate(packer.argument_types)

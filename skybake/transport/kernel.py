@@ -13,7 +13,7 @@ from typing import Any
 import llvmlite.binding as llvm
 
 from skybake.transport import beside
-from skybake.transport.arguments import Flat, Kind, flatten_all, word_format
+from skybake.transport.arguments import Flat, Kind, flatten_all, word_letters
 from skybake.transport.cache import (
     KERNEL_SUFFIX,
     cache_directory,
@@ -75,10 +75,10 @@ class Kernel:
             None if directory is None else self._load(directory / f"{symbol}{KERNEL_SUFFIX}")
         )
         if machine_code is None:
-            machine_code = self._compile(symbol, arguments)
+            machine_code = self._compile(symbol, arguments, word_letters(kinds))
             if directory is not None:
                 _keep(directory / f"{symbol}{KERNEL_SUFFIX}", machine_code)
-        entry = self._entries[kinds] = Entry(machine_code, word_format(kinds))
+        entry = self._entries[kinds] = Entry(machine_code, word_letters(kinds))
         return entry
 
     def _load(self, path: Path) -> MachineCode | None:
@@ -87,11 +87,11 @@ class Kernel:
             content = read_sealed(path)
         return None if content is None else MachineCode.from_bytes(content)
 
-    def _compile(self, symbol: str, arguments: tuple[Any, ...]) -> MachineCode:
+    def _compile(self, symbol: str, arguments: tuple[Any, ...], layout: str) -> MachineCode:
         from skybake.transport.compile import compile_kernel
 
         values = tuple(each.value if isinstance(each, Flat) else each for each in arguments)
-        return compile_kernel(self._dispatcher, symbol, values)
+        return compile_kernel(self._dispatcher, symbol, values, layout)
 
     def _digest(self, kinds: tuple[Kind, ...]) -> str:
         function = self.py_func

@@ -51,14 +51,14 @@ class Entry:
     ----------
     machine_code : MachineCode
         Made on this processor.
-    layout : struct.Struct
-        The words of its arguments.
+    layout : str
+        Letters by which `struct` packs the words of its arguments.
     """
 
-    def __init__(self, machine_code: MachineCode, layout: struct.Struct) -> None:
+    def __init__(self, machine_code: MachineCode, layout: str) -> None:
         address = _link(machine_code)
         self._call = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_char_p, ctypes.c_void_p)(address)
-        self._pack = layout.pack
+        self._pack = struct.Struct(f"={layout}").pack
         self._is_none = machine_code.result == "none"
         self._result = {"bool": "?", "float": "d"}.get(machine_code.result, "q")
 

@@ -53,7 +53,10 @@ ALWAYS = {
     "sequence": ("--method", "hillaire", "--dry-run"),
     "probe": ("--method", "hillaire", "--samples", "1"),
 }
-COMMANDS = {name: main.get_command(click.Context(main), name) for name in ("render", "sequence", "probe", "preview")}
+COMMANDS = {
+    name: main.get_command(click.Context(main), name)
+    for name in ("render", "sequence", "probe", "preview")
+}
 
 mutations = st.one_of(
     st.text(st.characters(exclude_characters="\0", exclude_categories=["Cs"]), max_size=8),

@@ -1,0 +1,99 @@
+"""How much work is done, in counts and ratios, which no other load on the machine changes."""
+
+import math
+import subprocess
+import sys
+from collections import Counter
+
+import pytest
+
+import skybake
+from benchmarks.processes import usage
+from benchmarks.render import FLOOR, IMPORTS
+from skybake.luts.atmosphere import build_atmosphere
+from skybake.optics.medium import build_medium
+from skybake.sky.sky import WAVELENGTHS
+from skybake.transport.kernel import Kernel
+
+
+@pytest.fixture
+def work(monkeypatch):
+    """Counts what kernels are asked for: calls by name, fans, their samples, and pixels."""
+    counts = Counter()
+    call = Kernel.__call__
+
+    def counted(kernel, *arguments):
+        result = call(kernel, *arguments)
+        name = kernel.py_func.__name__
+        counts[name] += 1
+        if name == "trace":
+            fans = result - arguments[4]
+            counts["fans"] += fans
+            counts["samples"] += int(arguments[6].number[:fans].sum())
+        elif name == "add_diffuse":
+            counts["fans scattered"] += arguments[5] - arguments[4]
+        elif name == "fill_directions":
+            rows, columns, _ = arguments[-1].shape
+            counts["pixels"] += rows * columns
+        return result
+
+    monkeypatch.setattr(Kernel, "__call__", counted)
+    return counts
+
+
+def baked(folder, preset="earth", sun=5.0, **settings):
+    settings = skybake.MapSettings(sun_elevation=math.radians(sun), **settings)
+    skybake.bake(preset, folder / "sky.exr", settings)
+
+
+@pytest.mark.parametrize(
+    ("settings", "pixels"),
+    [
+        ({"width": 1024}, 1024 * 512),
+        ({"width": 256, "projection": "cubemap"}, 6 * 256 * 256),
+    ],
+)
+def test_each_pixel_is_evaluated_once(tmp_path, work, settings, pixels):
+    """But for 180,000 by which illuminance and pixel type are found, of every map."""
+    baked(tmp_path, **settings)
+    assert pixels < work["pixels"] < pixels + 200_000
+    assert work["fill_directions"] < 150
+
+
+@pytest.mark.parametrize(
+    ("preset", "sun", "altitude", "fans", "samples"),
+    [
+        ("earth", 5.0, 0.0, 240, 12_200),
+        ("mars", 5.0, 0.0, 240, 12_000),
+        ("earth", -12.0, 0.0, 240, 12_200),
+        ("earth", 5.0, 400.0, 360, 37_200),
+    ],
+)
+def test_a_sky_takes_few_rays(tmp_path, work, preset, sun, altitude, fans, samples):
+    baked(tmp_path, preset, sun, width=64, altitude=altitude)
+    work.clear()
+    baked(tmp_path, preset, sun, width=64, altitude=altitude)
+    assert work["fans"] <= 1.1 * fans
+    assert work["samples"] <= 1.1 * samples
+    assert sum(work[name] for name in ("trace", "add_single_scattering", "add_diffuse")) < 150
+
+
+@pytest.mark.parametrize(("preset", "scattered"), [("earth", 3600), ("mars", 5040)])
+def test_a_solution_takes_few_passes(work, preset, scattered):
+    build_atmosphere(build_medium(skybake.load_preset(preset), WAVELENGTHS), "full")
+    assert work["fans scattered"] <= 1.1 * scattered
+
+
+def test_a_large_map_takes_little_longer_than_its_file(tmp_path):
+    """Beside a process that imports numpy, numba and OpenImageIO and writes the same pixels."""
+    sky = tmp_path / "sky.exr"
+    options = ("--size", "4096x2048", "--sun", "5deg", "-q", "-o", str(sky))
+    render = [sys.executable, "-m", "skybake", "render", *options]
+    subprocess.run(render, check=True)
+    floor = [sys.executable, "-c", FLOOR, str(sky), str(tmp_path / "floor.exr")]
+    ratios = []
+    for _ in range(5):
+        ours, imports = usage(render), usage([sys.executable, "-c", IMPORTS])
+        _, written = map(float, usage(floor)["output"].split())
+        ratios.append(ours["cpu"] / (imports["cpu"] + written))
+    assert min(ratios) < 1.6
