@@ -29,7 +29,7 @@ def work(monkeypatch):
         if name == "trace":
             fans = result - arguments[4]
             counts["fans"] += fans
-            counts["samples"] += int(arguments[6].number[:fans].sum())
+            counts["samples"] += int(arguments[6].value.number[:fans].sum())
         elif name == "add_diffuse":
             counts["fans scattered"] += arguments[5] - arguments[4]
         elif name == "fill_directions":

@@ -93,8 +93,7 @@ class FacePanel(Panel):
 
     def rows(self, first: int, last: int) -> Pixels:
         """Compute the rows first..last."""
-        vectors = cubemap.face_directions(self._face, self.width, first, last)
-        zenith, bearing = cubemap.zenith_bearing(vectors)
+        zenith, bearing = cubemap.face_angles(self._face, self.width, first, last)
         azimuth = bearing - self._scene.settings.sun_azimuth
         pixels = _sky(self._scene, zenith, azimuth, math.pi / 2.0 / self.width)
         return _finish(self._scene, pixels, self._disc, first)
@@ -193,7 +192,8 @@ def _sky(scene: Scene, zenith: np.ndarray, azimuth: np.ndarray, height: float) -
             samples = samples.reshape(-1, LIMB_SAMPLES, shape[1], 3)
             pixels[limb[:, 0]] = samples.mean(axis=1)
         else:
-            around = np.broadcast_to(azimuth[limb][:, None], fine.shape)
+            around = np.broadcast_to(azimuth, shape)[limb]
+            around = np.broadcast_to(around[:, None], fine.shape)
             pixels[limb] = scene.evaluate(fine, around, height / LIMB_SAMPLES).mean(axis=1)
     return pixels
 

@@ -19,7 +19,7 @@ from skybake.sky.sky import WAVELENGTHS, Sky
 from skybake.sky.sun import SunDisc
 from skybake.sky.view import SkyView
 from skybake.transport.arguments import flatten
-from skybake.transport.threads import run_rows
+from skybake.transport.threads import run_rows, shares
 
 PROBE_ZENITHS = 192
 PROBE_AZIMUTHS = 256
@@ -130,5 +130,5 @@ class Scene:
             scratch = allocate_pixels(self.view, columns)
             fill_directions(*pixels, first, last, scratch, out[first:last])
 
-        run_rows(rows, work, chunk=16)
+        run_rows(rows, work, chunk=128 // shares(8))
         return out

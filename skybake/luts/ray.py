@@ -15,7 +15,7 @@ from skybake.optics.legendre import PEAK_NODES, Truncation
 from skybake.optics.medium import Array
 from skybake.transport.arguments import flatten
 from skybake.transport.samples import allocate_samples
-from skybake.transport.threads import run_rows
+from skybake.transport.threads import run_rows, shares
 from skybake.transport.trace import MAX_ARC, trace
 
 
@@ -83,16 +83,17 @@ def trace_rays(
     moments = flatten(field), flatten(side_by_side(field))
 
     def work(begin: int, end: int) -> None:
-        samples, scratch = allocate_samples(cut.medium), allocate_scratch(field, fans)
+        work_space = allocate_samples(cut.medium)
+        samples, scratch = flatten(work_space), flatten(allocate_scratch(field, fans))
         while begin < end:
             stop = trace(medium, shells, max_arc, starts, begin, end, samples)
             batch = bundle, begin, stop, samples
-            sunlit = allocate_sunlit(cut.medium, int(samples.number[: stop - begin].max()))
+            sunlit = allocate_sunlit(cut.medium, int(work_space.number[: stop - begin].max()))
             add_single_scattering(*sources, *batch, sunlit, scattered, light)
             # A field on less than two altitudes is none.
             if field.altitude.size > 1:
                 add_diffuse(*moments, medium, *batch, scratch, light)
             begin = stop
 
-    run_rows(len(fans.starts), work, chunk=max(1, len(fans.starts) // 32))
+    run_rows(len(fans.starts), work, chunk=max(1, len(fans.starts) // shares(32)))
     return RayLight(single, diffuse)

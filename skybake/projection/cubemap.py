@@ -47,6 +47,25 @@ def zenith_bearing(directions: Array) -> tuple[Array, Array]:
     return np.arctan2(np.hypot(x, z), y), np.arctan2(x, -z)
 
 
+def face_angles(face: str, edge: int, first: int, last: int) -> tuple[Array, Array]:
+    """Angles of the texels in rows first..last, like `zenith_bearing` of `face_directions`.
+
+    Returns
+    -------
+    zenith : ndarray of float64, shape (last - first, edge)
+        [rad]
+    bearing : ndarray of float64, shape (1, edge) or (last - first, edge)
+        One row where the face stands upright, since its columns then do too. [rad]
+    """
+    u = ((2.0 * np.arange(edge) + 1.0) / edge - 1.0)[None]
+    v = u[0, first:last, None]
+    x, y, z = (
+        forward + (right * u if right else 0.0) - (up * v if up else 0.0)
+        for right, up, forward in zip(*_FRAMES[face], strict=True)
+    )
+    return np.arctan2(np.hypot(x, z), y), np.arctan2(x, -z)
+
+
 def solid_angles(edge: int) -> Array:
     """Solid angles of a face's texels, shape (edge, edge); six faces make 4 pi. [sr]"""
     texel = np.arange(edge)

@@ -42,9 +42,20 @@ def _keep_inside(i, size, out):
 
 
 @kernel
+def _channels(view):
+    """R, G and B with all lobes each."""
+    return 3 * view.curves.shape[1]
+
+
+@kernel
+def _azimuths(view):
+    return view.table.shape[2] // _channels(view)
+
+
+@kernel
 def _azimuth_weights(view, theta, phi, cosine, out):
     """Weights of four azimuths; returns the row of `_fill_latitude` that holds the first."""
-    size = view.table.shape[2]
+    size = _azimuths(view)
     if view.zenith_first == 0.0:
         return _cubic(phi / math.pi * (size - 1), size, out) + 1
     middle, half = sun_range(view.sun_zenith, view.zenith_horizon, theta)
@@ -67,22 +78,27 @@ def _latitude_weights(view, side, zenith, out):
 
 @kernel
 def _fill_latitude(view, side, zenith, j_first, j_last, weights, out):
-    """Interpolate the table at one zenith angle into rows of `out`, (azimuth + 2, channel).
+    """Interpolate the table at one zenith angle into rows of `out`, (azimuth + 2) * channel.
 
-    Row j holds azimuth j - 1; rows 0 and -1 mirror the neighbours of the sun's
-    meridian, about which the sky is symmetric.
+    Row j holds azimuth j - 1; the first and the last row mirror the neighbours of the
+    sun's meridian, about which the sky is symmetric. At least four rows are filled.
     """
     i = _latitude_weights(view, side, zenith, weights)
-    azimuths, channels = view.table.shape[2], view.table.shape[3]
+    channels, azimuths = _channels(view), _azimuths(view)
     a, b = np.float32(weights[0]), np.float32(weights[1])
     c, d = np.float32(weights[2]), np.float32(weights[3])
-    table = view.table[side]
-    for row in range(j_first, j_last):
-        j = azimuths - 1 - abs(azimuths - 1 - abs(row - 1))
-        at_a, at_b, at_c, at_d = table[i, j], table[i + 1, j], table[i + 2, j], table[i + 3, j]
-        here = out[row]
+    begin, end = (max(j_first, 1) - 1) * channels, (min(j_last, azimuths + 1) - 1) * channels
+    at_a, at_b = view.table[side, i, begin:end], view.table[side, i + 1, begin:end]
+    at_c, at_d = view.table[side, i + 2, begin:end], view.table[side, i + 3, begin:end]
+    here = out[begin + channels : end + channels]
+    for k in range(here.size):
+        here[k] = a * at_a[k] + b * at_b[k] + c * at_c[k] + d * at_d[k]
+    if j_first == 0:
         for k in range(channels):
-            here[k] = a * at_a[k] + b * at_b[k] + c * at_c[k] + d * at_d[k]
+            out[k] = out[2 * channels + k]
+    if j_last == azimuths + 2:
+        for k in range(channels):
+            out[(azimuths + 1) * channels + k] = out[(azimuths - 1) * channels + k]
 
 
 @kernel
@@ -129,7 +145,7 @@ class PixelScratch(NamedTuple):
 
     Attributes
     ----------
-    latitude : ndarray of float32, shape (side, azimuth + 2, 3 * lobe)
+    latitude : ndarray of float32, shape (side, (azimuth + 2) * 3 * lobe)
         The table at one zenith angle, above the horizon and below it.
     by_lobe : ndarray of float32, shape (side, azimuth + 2, 3, lobe)
         The same numbers.
@@ -158,11 +174,12 @@ class PixelScratch(NamedTuple):
 
 def allocate_pixels(view: SkyView, columns: int) -> PixelScratch:
     """Make the work space for rows of so many pixels."""
-    azimuths, channels = view.table.shape[2:]
-    latitude = np.empty((2, azimuths + 2, channels), np.float32)
+    lobes = view.curves.shape[1]
+    azimuths = view.table.shape[2] // (3 * lobes)
+    latitude = np.empty((2, (azimuths + 2) * 3 * lobes), np.float32)
     return PixelScratch(
         latitude=latitude,
-        by_lobe=latitude.reshape(2, azimuths + 2, 3, channels // 3),
+        by_lobe=latitude.reshape(2, azimuths + 2, 3, lobes),
         row=np.empty((2, columns), np.int64),
         weights=np.empty((2, columns, 4), np.float32),
         angle=np.empty(columns),
@@ -197,7 +214,7 @@ def fill_directions(view, zenith, azimuth, height, first, last, scratch, out):
     out : ndarray of float32, shape (last - first, column, 3)
         Receives RGB.
     """
-    azimuths, columns = view.table.shape[2], out.shape[1]
+    azimuths, columns = _azimuths(view), out.shape[1]
     latitude, by_lobe = scratch.latitude, scratch.by_lobe
     angle, cosine, place = scratch.angle, scratch.cosine, scratch.place
     row, weights = scratch.row, scratch.weights
@@ -205,7 +222,7 @@ def fill_directions(view, zenith, azimuth, height, first, last, scratch, out):
     has_weights = scratch.has_weights
     has_weights[:] = False
     shares_zenith, shares_azimuth = zenith.shape[1] == 1, azimuth.shape[0] == 1
-    keeps_weights = shares_zenith and shares_azimuth and view.zenith_first == 0.0
+    keeps_weights = shares_azimuth and view.zenith_first == 0.0
     is_mirrored = False
     for i in range(first, last):
         if i == first or not shares_azimuth:
@@ -221,7 +238,8 @@ def fill_directions(view, zenith, azimuth, height, first, last, scratch, out):
                     continue
                 if not (keeps_weights and has_weights[side]):
                     has_weights[side] = True
-                    for j in range(begin, begin + span):
+                    kept = 0 if keeps_weights else begin
+                    for j in range(kept, computed if keeps_weights else begin + span):
                         row[side, j] = _azimuth_weights(
                             view, theta[side], angle[j], cosine[j], four
                         )

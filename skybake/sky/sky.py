@@ -194,7 +194,7 @@ class Sky:
             zenith_first=zenith_first,
             zenith_horizon=zenith_horizon,
             sun_zenith=sun_zenith,
-            table=table.astype(np.float32),
+            table=table.astype(np.float32).reshape(*table.shape[:2], -1),
             curves=np.ascontiguousarray(lobes.curves.T, dtype=np.float32),
         )
 

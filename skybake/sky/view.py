@@ -57,7 +57,7 @@ class SkyView(NamedTuple):
         Zenith angle of the planet's horizon. [rad]
     sun_zenith : float
         Zenith angle of the sun. [rad]
-    table : ndarray of float32, shape (2, latitude, azimuth, 3 * lobe)
+    table : ndarray of float32, shape (2, latitude, azimuth * 3 * lobe)
         Above the horizon and below it; azimuths of `table_directions`, from the sun's
         to the opposite one; channels are R, G and B with all lobes each.
     curves : ndarray of float32, shape (SCATTERING_ANGLES, lobe)

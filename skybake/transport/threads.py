@@ -41,6 +41,11 @@ def run_rows(rows: int, work: Callable[[int, int], object], *, chunk: int = 1) -
         raise
 
 
+def shares(most: int) -> int:
+    """Into how many shares work is best cut: few where the caller will do all of them."""
+    return max(1, most // 8) if runs_alone() else most
+
+
 def lone_threads(count: int) -> ThreadPoolExecutor:
     """Threads that share no work: `run_rows` stays in the one that calls it."""
     return ThreadPoolExecutor(count, initializer=stay_in_thread)

@@ -135,3 +135,15 @@ def test_faces_meet_at_the_edges_of_the_cross():
     for axis in (0, 1):
         step = np.linalg.norm(np.diff(cross, axis=axis), axis=-1)
         assert np.nanmax(step) < 2.0 / edge * 1.01
+
+
+@pytest.mark.parametrize("face", cubemap.FACES)
+def test_angles_of_a_face_are_those_of_its_directions(face):
+    zenith, bearing = cubemap.face_angles(face, 12, 2, 11)
+    expected_zenith, expected_bearing = cubemap.zenith_bearing(
+        cubemap.face_directions(face, 12, 2, 11)
+    )
+    np.testing.assert_allclose(zenith, expected_zenith, rtol=0.0, atol=1e-14)
+    turn = np.exp(1j * (bearing - expected_bearing))
+    np.testing.assert_allclose(turn, 1.0, rtol=0.0, atol=1e-14)
+    assert bearing.shape == ((9, 12) if face in {"py", "ny"} else (1, 12))
