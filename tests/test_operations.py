@@ -13,6 +13,7 @@ from benchmarks.render import FLOOR, IMPORTS
 from skybake.luts.atmosphere import build_atmosphere
 from skybake.optics.medium import build_medium
 from skybake.sky.sky import WAVELENGTHS
+from skybake.transport.arguments import Flat
 from skybake.transport.kernel import Kernel
 
 
@@ -29,7 +30,7 @@ def work(monkeypatch):
         if name == "trace":
             fans = result - arguments[4]
             counts["fans"] += fans
-            counts["samples"] += int(arguments[6].value.number[:fans].sum())
+            counts["samples"] += int(_plain(arguments[6]).number[:fans].sum())
         elif name == "add_diffuse":
             counts["fans scattered"] += arguments[5] - arguments[4]
         elif name == "fill_directions":
@@ -39,6 +40,10 @@ def work(monkeypatch):
 
     monkeypatch.setattr(Kernel, "__call__", counted)
     return counts
+
+
+def _plain(argument):
+    return argument.value if isinstance(argument, Flat) else argument
 
 
 def baked(folder, preset="earth", sun=5.0, **settings):

@@ -11,6 +11,7 @@ from contextlib import AbstractContextManager, nullcontext
 
 import numpy as np
 
+from skybake.formats.half import fill_halves, half_rows
 from skybake.luts.grid import ORDER, empty_field, sun_angles
 from skybake.luts.harmonics import fill_each, harmonics_at
 from skybake.luts.multiple import add_diffuse, allocate_scratch, group_rays, side_by_side
@@ -25,7 +26,7 @@ from skybake.transport.beside import compile_beside
 from skybake.transport.cache import is_warm
 from skybake.transport.samples import allocate_samples
 
-KERNELS = (fill_each, add_diffuse, fill_sight_columns, fill_directions)
+KERNELS = (fill_each, add_diffuse, fill_sight_columns, fill_directions, fill_halves)
 
 
 def beside() -> AbstractContextManager[None]:
@@ -53,6 +54,7 @@ def compile_kernels() -> None:
     pixels = np.zeros((0, 1, 3), np.float32)
     place = np.zeros((1, 1))
     fill_directions(view, place, place, 1.0, 0, 0, allocate_pixels(view, 1), pixels)
+    half_rows(np.zeros((1, 1, 3), np.float32))
 
 
 if __name__ == "__main__":

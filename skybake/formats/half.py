@@ -35,14 +35,14 @@ def half_rows(rows: npt.NDArray[np.float32]) -> npt.NDArray[np.float16]:
     bits = values.view(np.int32)
 
     def work(first: int, last: int) -> None:
-        _fill_halves(values[first:last], bits[first:last], halves[first:last])
+        fill_halves(values[first:last], bits[first:last], halves[first:last])
 
     run_rows(len(rows), work, chunk=32)
     return out
 
 
 @kernel
-def _fill_halves(values, bits, out):
+def fill_halves(values, bits, out):
     """Write the bits of halves, given floats and their bits."""
     for i in range(out.shape[0]):
         value, bit, half = values[i], bits[i], out[i]
