@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -43,10 +44,12 @@ class ExrWriter(ScanlineWriter):
 
     def write_rows(self, y_begin: int, y_end: int, rows: Rows) -> None:
         """Write rows `y_begin` to `y_end`, the latter excluded, shape (row, column, channel)."""
-        self._check_range(rows)
+        ready, largest = rows, math.nan
         if self._spec.pixel == "half" and rows.dtype == np.float32:
-            rows = half_rows(np.asarray(rows, np.float32))
-        super().write_rows(y_begin, y_end, rows)
+            ready, largest = half_rows(np.asarray(rows, np.float32))
+        if not largest <= self._largest:
+            self._check_range(rows)
+        super().write_rows(y_begin, y_end, ready)
 
     def _check_range(self, rows: Rows) -> None:
         """Refuse what would come back as infinity; OpenImageIO stores it without a word."""

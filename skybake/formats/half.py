@@ -16,17 +16,20 @@ _SMALLEST_NORMAL = np.int32((127 - 14) << 23)
 _REBIAS = np.int32((15 - 127) << 23)
 
 
-def half_rows(rows: npt.NDArray[np.float32]) -> npt.NDArray[np.float16]:
+def half_rows(rows: npt.NDArray[np.float32]) -> tuple[npt.NDArray[np.float16], float]:
     """Round to the nearest half floats, ties to even, on all threads.
 
     Parameters
     ----------
     rows : ndarray of float32, shape (row, column, channel)
-        Magnitudes below 65520; what is larger, or no number, becomes anything.
+        What has a magnitude of 65520 or more, or is no number, becomes anything.
 
     Returns
     -------
     ndarray of float16
+        The halves.
+    float
+        The largest magnitude among `rows`; not a number if there is one that is none.
     """
     rows = np.ascontiguousarray(rows)
     out = np.empty(rows.shape, np.float16)
@@ -34,20 +37,24 @@ def half_rows(rows: npt.NDArray[np.float32]) -> npt.NDArray[np.float16]:
     values, halves = rows.reshape(flat), out.view(np.int16).reshape(flat)
     bits = values.view(np.int32)
 
+    largest = [0]
+
     def work(first: int, last: int) -> None:
-        fill_halves(values[first:last], bits[first:last], halves[first:last])
+        largest.append(fill_halves(values[first:last], bits[first:last], halves[first:last]))
 
     run_rows(len(rows), work, chunk=32)
-    return out
+    return out, float(np.int32(max(largest)).view(np.float32))
 
 
 @kernel
 def fill_halves(values, bits, out):
-    """Write the bits of halves, given floats and their bits."""
+    """Write the bits of halves, given floats and their bits; returns the largest magnitude's."""
+    largest = np.int32(0)
     for i in range(out.shape[0]):
         value, bit, half = values[i], bits[i], out[i]
         for j in range(half.size):
             magnitude = bit[j] & _MAGNITUDE
+            largest = max(largest, magnitude)
             # Half the last place that stays, less one unless that place is odd.
             odd = (magnitude >> np.int32(13)) & np.int32(1)
             normal = (magnitude + _REBIAS + np.int32(4095) + odd) >> np.int32(13)
@@ -60,3 +67,4 @@ def fill_halves(values, bits, out):
             small = whole + np.int32(1) if up else whole
             kept = small if magnitude < _SMALLEST_NORMAL else normal
             half[j] = np.int16(kept | ((bit[j] & _SIGN) >> np.int32(16)))
+    return np.int64(largest)

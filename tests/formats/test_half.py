@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 
 from skybake.formats.half import half_rows
 
@@ -17,12 +18,20 @@ def test_halves_are_rounded_as_numpy_rounds_them():
     expected = values.astype(np.float16)
     assert np.isfinite(expected).all()
     np.testing.assert_array_equal(
-        half_rows(values).view(np.uint16), expected.view(np.uint16), strict=True
+        half_rows(values)[0].view(np.uint16), expected.view(np.uint16), strict=True
     )
 
 
 def test_rows_keep_their_places():
     values = np.arange(70 * 3 * 4, dtype=np.float32).reshape(70, 3, 4)
-    np.testing.assert_array_equal(half_rows(values[::2, ::-1]), values[::2, ::-1])
-    assert half_rows(values).dtype == np.float16
-    assert half_rows(values[:0]).shape == (0, 3, 4)
+    halves, _ = half_rows(values[::2, ::-1])
+    np.testing.assert_array_equal(halves, values[::2, ::-1])
+    assert halves.dtype == np.float16
+    assert half_rows(values[:0])[0].shape == (0, 3, 4)
+
+
+@pytest.mark.parametrize("value", [70000.0, -70000.0, 3.5, -3.5, 0.0, np.inf, -np.inf, np.nan])
+def test_the_largest_magnitude_is_told(value):
+    values = np.zeros((70, 3, 4), np.float32)
+    values[66, 1, 2] = value
+    assert half_rows(values)[1] == pytest.approx(abs(value), nan_ok=True)

@@ -1,6 +1,5 @@
 """Tables on disk."""
 
-import io
 import resource
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -10,6 +9,7 @@ import pytest
 
 from skybake.luts import atmosphere, store
 from skybake.luts.atmosphere import KEPT, build_atmosphere, forget_atmospheres, is_stored
+from skybake.luts.store import arrays_from_content, content_from_arrays
 from tests.media import plain_medium
 
 MEDIUM = plain_medium(lambda h: np.exp(-h / 8.0), [0.01, 0.05])
@@ -111,14 +111,8 @@ def with_another_bit(whole):
 
 def with_another_array(whole, name, change):
     """The digest stays."""
-    source, target = io.BytesIO(whole), io.BytesIO()
-    target.write(source.read(32))
-    names = np.load(source)
-    np.save(target, names)
-    for key in names:
-        array = np.load(source)
-        np.save(target, change(array) if key == name else array)
-    return target.getvalue()
+    arrays = arrays_from_content(whole)
+    return whole[:32] + content_from_arrays(arrays | {name: change(arrays[name])})[32:]
 
 
 def with_nan(whole):
