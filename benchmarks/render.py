@@ -52,6 +52,7 @@ def cases(folder: Path, options: argparse.Namespace) -> dict[str, list[str]]:
     named = {
         "imports": [sys.executable, "-c", IMPORTS],
         "help": [*skybake, "--help"],
+        "64x32": map_of("64x32"),
         "2048x1024": map_of("2048x1024"),
         "4096x2048": map_of("4096x2048", name="large.exr"),
         "4096x2048 mars": map_of("4096x2048", "--preset", "mars"),

@@ -23,13 +23,14 @@ LARGE = "4096x2048"
 ORDER = (
     *("floor 4096x2048", LARGE, "4096x2048 mars", "4096x2048 at 400 km"),
     *("Mitsuba 4096x2048", "Blender 4096x2048", "2048x1024", "cubemap 1024", FRAMES),
-    *("2048x1024 cold", "help"),
+    *("64x32", "2048x1024 cold", "help"),
 )
 NAMES = {
     "floor 4096x2048": "floor, 4096x2048",
     LARGE: "`--size 4096x2048`",
     "4096x2048 mars": "`--size 4096x2048 --preset mars`",
     "4096x2048 at 400 km": "`--size 4096x2048 --altitude 400km`",
+    "64x32": "`--size 64x32`",
     "2048x1024": "`--size 2048x1024`",
     "cubemap 1024": "`--projection cubemap --size 1024`",
     FRAMES: "`sequence`, 96 frames of 2048x1024",
@@ -103,7 +104,7 @@ def _growth(series: dict[str, Any], medians: dict[str, Any]) -> dict[str, str]:
     band = 2 * 128 * (32768 - 16384) * 12 / 1e6
     return {
         "growth": "\n".join(lines),
-        "serial": f"{medians['imports']['wall']:.2f}",
+        "serial": f"{medians['64x32']['wall']:.2f}",
         "per_megapixel": f"{per_pixel * 1e9:.0f}",
         "wall_32k": f"{last['wall'] + per_pixel * (pixels - last['work']):.0f}",
         "rss_32k": f"{last['rss'] + band:.0f}",

@@ -94,16 +94,13 @@ def _without_emission() -> Iterator[None]:
 
 
 class _NoEngine:
-    """Stands where numba has LLVM's engine, and links nothing."""
+    """Stands where numba has LLVM's engine: what is added to it comes to nothing."""
 
     def __init__(self) -> None:
         self._nowhere = ctypes.c_void_p()
 
-    def add_module(self, module: Any) -> None:
-        """Leave a module where it is."""
-
-    def finalize_object(self) -> None:
-        """Emit nothing."""
+    def __getattr__(self, name: str) -> Callable[..., None]:
+        return lambda *_: None
 
     def is_symbol_defined(self, name: str) -> bool:  # noqa: ARG002
         """Claim to know every name."""
