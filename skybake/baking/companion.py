@@ -12,9 +12,10 @@ from contextlib import AbstractContextManager, nullcontext
 import numpy as np
 
 from skybake.formats.half import fill_halves, half_rows
+from skybake.luts.fans import group_rays
 from skybake.luts.grid import ORDER, empty_field, sun_angles
 from skybake.luts.harmonics import fill_each, harmonics_at
-from skybake.luts.multiple import add_diffuse, allocate_scratch, group_rays, side_by_side
+from skybake.luts.multiple import add_diffuse, allocate_scratch, side_by_side
 from skybake.optics.legendre import truncate_peaks
 from skybake.optics.medium import build_medium, pad_wavelengths
 from skybake.preset import load_preset

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from skybake.luts.fans import Fans
 from skybake.luts.field import DiffuseField, altitude_weight, fill_ground_irradiance, sun_weights
 from skybake.luts.harmonics import fill_harmonics
 from skybake.optics.medium import Array
@@ -16,32 +17,6 @@ from skybake.transport.kernel import kernel
 
 NEGLIGIBLE = 3e-4
 """Share of a ray's scattering below which an order l of a sample is left out."""
-
-
-class Fans(NamedTuple):
-    """Rays in groups that share their start and zenith angle, and so their samples.
-
-    Attributes
-    ----------
-    rays : ndarray of float64, shape (ray, 4)
-        Radius of each ray's start [km], cosines of its zenith angle and of the sun's
-        there, and of the angle between ray and sun.
-    first : ndarray of int64, shape (fan + 1,)
-        First ray of each fan, and the end of the last.
-    starts : ndarray of float64, shape (fan, 2)
-        What the rays of each fan share, as `trace` takes it.
-    """
-
-    rays: Array
-    first: npt.NDArray[np.int64]
-    starts: Array
-
-
-def group_rays(rays: Array) -> Fans:
-    """Find the fans among rays that are ordered by direction."""
-    is_new = np.any(rays[1:, :2] != rays[:-1, :2], axis=1)
-    first = np.concatenate([[0], np.flatnonzero(is_new) + 1, [len(rays)]]).astype(np.int64)
-    return Fans(rays, first, np.ascontiguousarray(rays[first[:-1], :2]))
 
 
 class Scratch(NamedTuple):

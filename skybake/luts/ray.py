@@ -7,8 +7,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from skybake.luts.fans import group_rays
 from skybake.luts.field import DiffuseField
-from skybake.luts.multiple import add_diffuse, allocate_scratch, group_rays, side_by_side
+from skybake.luts.multiple import add_diffuse, allocate_scratch, side_by_side
 from skybake.luts.single import add_single_scattering
 from skybake.luts.sunlit import allocate_sunlit
 from skybake.optics.legendre import PEAK_NODES, Truncation

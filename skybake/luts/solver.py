@@ -9,6 +9,7 @@ import numpy as np
 
 from skybake.errors import InputError
 from skybake.luts.anderson import Anderson
+from skybake.luts.fans import Fans, group_rays
 from skybake.luts.field import DiffuseField, lower_order, raise_order, sum_fields
 from skybake.luts.grid import (
     ORDER,
@@ -19,7 +20,7 @@ from skybake.luts.grid import (
     project,
     vertical_depth,
 )
-from skybake.luts.multiple import Fans, add_diffuse, allocate_scratch, group_rays, side_by_side
+from skybake.luts.multiple import add_diffuse, allocate_scratch, side_by_side
 from skybake.luts.ray import trace_rays
 from skybake.optics.legendre import Truncation, legendre_polynomials
 from skybake.optics.medium import Array

@@ -15,15 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from skybake.transport.cache import (
-    TABLES_FOLDER,
-    TABLES_SUFFIX,
-    cache_directory,
-    read_sealed,
-    seal,
-    unseal,
-    write_sealed,
-)
+from skybake.transport.cache import TABLES_FOLDER, TABLES_SUFFIX, cache_directory
+from skybake.transport.sealed import read_sealed, seal, unseal, write_sealed
 
 _HEAD_SIZE = 8
 

@@ -14,14 +14,9 @@ import llvmlite.binding as llvm
 
 from skybake.transport import beside
 from skybake.transport.arguments import Flat, Kind, flatten_all, word_letters
-from skybake.transport.cache import (
-    KERNEL_SUFFIX,
-    cache_directory,
-    read_sealed,
-    warn_of_loss,
-    write_sealed,
-)
+from skybake.transport.cache import KERNEL_SUFFIX, cache_directory, warn_of_loss
 from skybake.transport.machine_code import Entry, MachineCode
+from skybake.transport.sealed import read_sealed, write_sealed
 
 
 class Kernel:

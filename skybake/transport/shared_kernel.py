@@ -15,15 +15,9 @@ from numba.core.compiler import CompileResult
 from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
 
-from skybake.transport.cache import (
-    KERNEL_SUFFIX,
-    cache_directory,
-    read_sealed,
-    source_hash,
-    warn_of_loss,
-    write_sealed,
-)
+from skybake.transport.cache import KERNEL_SUFFIX, cache_directory, source_hash, warn_of_loss
 from skybake.transport.compile import FAST_MATH
+from skybake.transport.sealed import read_sealed, write_sealed
 
 
 def shared_kernel(function: Callable[..., Any]) -> Any:

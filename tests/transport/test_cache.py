@@ -12,6 +12,7 @@ import pytest
 
 import skybake
 from skybake.transport import cache
+from skybake.transport.sealed import read_sealed
 
 SCRIPT = """
 import sys
@@ -201,7 +202,7 @@ def test_a_damaged_kernel_is_compiled_anew(tmp_path, damage):
     result = run(tmp_path)
     assert result.stdout.split()[1:] == ["True", "True", "0"]
     assert result.stderr == ""
-    assert cache.read_sealed(path) is not None
+    assert read_sealed(path) is not None
     assert run(tmp_path).stdout.split()[-1] == "1"
 
 
