@@ -14,7 +14,7 @@ from typing import Any, Literal
 import numpy as np
 
 from skybake.baking.light import Light, attributes_from_light, light_of_scene
-from skybake.baking.panel import ColumnPanel, CrossPanel, EquirectPanel, FacePanel, Panel, Pixels
+from skybake.baking.panel import ColumnPanel, CrossPanel, EquirectPanel, FacePanel, Panel
 from skybake.baking.paths import default_path, map_paths
 from skybake.baking.preview import SURVEY_ROWS
 from skybake.baking.recipe import preview_texts, recipe_attributes
@@ -22,6 +22,7 @@ from skybake.baking.scene import Scene
 from skybake.baking.settings import MapSettings
 from skybake.baking.show import scene_ev, show_scene
 from skybake.formats.preview import check_preview, open_preview
+from skybake.formats.scanlines import Rows
 from skybake.formats.spec import Attribute, MapSpec
 from skybake.formats.writer import MapWriter, check_map_path, open_maps
 from skybake.preset import Planet, load_preset
@@ -242,21 +243,24 @@ def _write(
         for path, panel in panels.items()
         for first in range(0, panel.height, BAND_ROWS)
     ]
+
+    def compute(path: Path, first: int, last: int) -> Rows:
+        return writers[path].ready(panels[path].rows(first, last))
+
     with ThreadPoolExecutor(1) as ahead:
         submit = _compute_now if runs_alone() else ahead.submit
-        pending = submit(panels[bands[0][0]].rows, *bands[0][1:])
+        pending = submit(compute, *bands[0])
         for i, (path, first, last) in enumerate(bands):
             rows = pending.result()
             if i + 1 < len(bands):
-                following, *span = bands[i + 1]
-                pending = submit(panels[following].rows, *span)
-            writers[path].write_rows(first, last, rows)
+                pending = submit(compute, *bands[i + 1])
+            writers[path].write_ready(first, last, rows)
             if progress is not None:
                 progress((i + 1) / len(bands))
 
 
-def _compute_now(work: Callable[..., Pixels], *arguments: Any) -> Future[Pixels]:
+def _compute_now(work: Callable[..., Rows], *arguments: Any) -> Future[Rows]:
     """Take the place of a thread where all of them are busy."""
-    done: Future[Pixels] = Future()
+    done: Future[Rows] = Future()
     done.set_result(work(*arguments))
     return done

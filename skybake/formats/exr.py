@@ -42,14 +42,14 @@ class ExrWriter(ScanlineWriter):
         self._spec = spec
         self._largest = largest_value(spec.pixel, spec.compression)
 
-    def write_rows(self, y_begin: int, y_end: int, rows: Rows) -> None:
-        """Write rows `y_begin` to `y_end`, the latter excluded, shape (row, column, channel)."""
+    def ready(self, rows: Rows) -> Rows:
+        """Check that rows fit their type, and convert them to it."""
         ready, largest = rows, math.nan
         if self._spec.pixel == "half" and rows.dtype == np.float32:
             ready, largest = half_rows(np.asarray(rows, np.float32))
         if not largest <= self._largest:
             self._check_range(rows)
-        super().write_rows(y_begin, y_end, ready)
+        return ready
 
     def _check_range(self, rows: Rows) -> None:
         """Refuse what would come back as infinity; OpenImageIO stores it without a word."""

@@ -67,8 +67,8 @@ class HdrWriter(ScanlineWriter):
         if kind is None:
             _insert_after_first_line(self._temporary, self._header)
 
-    def write_rows(self, y_begin: int, y_end: int, rows: Rows) -> None:
-        """Write rows `y_begin` to `y_end`, the latter excluded, shape (row, column, channel)."""
+    def ready(self, rows: Rows) -> Rows:
+        """Check that rows are finite, and round them to what the format holds."""
         low, high = float(rows.min()), float(rows.max())
         if not (low >= -_LARGEST and high <= _LARGEST):
             got = high if low >= -_LARGEST else low
@@ -77,7 +77,7 @@ class HdrWriter(ScanlineWriter):
         if low < 0.0:
             self.clamped += int(np.count_nonzero(values < 0.0))
             values = np.maximum(values, np.float32(0.0))
-        super().write_rows(y_begin, y_end, round_to_rgbe(values))
+        return round_to_rgbe(values)
 
 
 def round_to_rgbe(values: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:

@@ -81,6 +81,14 @@ class ScanlineWriter:
 
     def write_rows(self, y_begin: int, y_end: int, rows: Rows) -> None:
         """Write rows `y_begin` to `y_end`, the latter excluded, shape (row, column, channel)."""
+        self.write_ready(y_begin, y_end, self.ready(rows))
+
+    def ready(self, rows: Rows) -> Rows:
+        """Check rows and turn them into what the file holds, on any thread."""
+        return rows
+
+    def write_ready(self, y_begin: int, y_end: int, rows: Rows) -> None:
+        """Write rows that `ready` returned."""
         if self._failed is not None:
             raise self._failed
         if rows.shape != (y_end - y_begin, *self._shape) or y_begin != self._next_row:

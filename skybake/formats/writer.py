@@ -31,7 +31,8 @@ def open_map(path: Path, spec: MapSpec) -> Iterator[MapWriter]:
     Yields
     ------
     MapWriter
-        With ``write_rows(y_begin, y_end, rows)``, float32 or float16, and `clamped`.
+        With ``write_rows(y_begin, y_end, rows)``, float32 or float16, or its halves `ready`
+        and `write_ready`, and `clamped`.
         Calls hold no lock of the interpreter, so that rows can be computed meanwhile;
         bands of 256 rows keep every compression's threads busy.
 
