@@ -3,9 +3,9 @@
 Usage: ``python -m benchmarks.render [--runs 7] [--json FILE] [--mitsuba PYTHON]
 [--blender PYTHON] [--large] [--cold]``. Runs are interleaved and the median is taken, so that a
 machine's moods fall on all alike. The floor is a process that imports numpy, numba and
-OpenImageIO and writes the same pixels as skybake has baked. Mitsuba (``pip install mitsuba``) and
-Blender (``pip install bpy``) want other versions of numpy, so each is named by the interpreter that
-has it.
+OpenImageIO and writes the same pixels as skybake has baked. Mitsuba comes with the extra ``bench``
+(it needs LLVM's shared library); it may also lie in another environment, as Blender (``pip install
+bpy``) must where it wants another Python: each is named by the interpreter that has it.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import argparse
 import json
 import sys
 import tempfile
+from importlib.util import find_spec
 from pathlib import Path
 
 from benchmarks.processes import machine, medians, usage
@@ -128,7 +129,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--runs", type=int, default=7)
     parser.add_argument("--json", type=Path)
-    parser.add_argument("--mitsuba", metavar="PYTHON", help="interpreter that has mitsuba")
+    parser.add_argument(
+        "--mitsuba",
+        metavar="PYTHON",
+        default=sys.executable if find_spec("mitsuba") else None,
+        help="interpreter that has mitsuba",
+    )
     parser.add_argument("--blender", metavar="PYTHON", help="interpreter that has bpy")
     parser.add_argument("--large", action="store_true", help="also 16384x8192")
     parser.add_argument("--cold", action="store_true", help="also without compiled kernels")
