@@ -14,10 +14,10 @@ from skybake.optics.legendre import Truncation
 from skybake.optics.medium import Array, altitude_nodes
 from skybake.transport.shells import altitude_shells
 
-ORDER = 10
+ORDER = 14
 """Highest harmonic of the diffuse field; forward peaks beyond it are truncated."""
 
-ALTITUDES = 24
+ALTITUDES = 30
 THIN_DEPTH = 2.0
 ALTITUDES_PER_DEPTH = 4.0
 MAX_ALTITUDES = 96
@@ -28,8 +28,8 @@ LAST_JUDGED = math.radians(110.0)
 LAST_JUDGED_THICK = math.radians(97.0)
 """Solar zenith angles beyond which it is night, and where thick air settles very slowly. [rad]"""
 
-UPWARD = 10
-DOWNWARD = 5
+UPWARD = 12
+DOWNWARD = 6
 
 # Spacing of the sun's zenith angles: fine where the planet's shadow passes through
 # the air, and not too wide at the zenith, near which moments go as sin(angle)**m.

@@ -25,9 +25,9 @@ LATITUDES_FROM_SPACE = 180
 AZIMUTHS = 97
 AZIMUTHS_FROM_SPACE = 121
 
-RAY_AZIMUTHS = 13
+RAY_AZIMUTHS = 17
 """Azimuths of rays where the observer sees no twilight: the diffuse field has orders m up to
-10, and what the sun alone lights is smoother."""
+14, and what the sun alone lights is smoother."""
 
 RAY_AZIMUTHS_TWILIGHT = 49
 TWILIGHT_ELEVATION = math.radians(2.0)

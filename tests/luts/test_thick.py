@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from skybake.luts.grid import ORDER
 from skybake.luts.solver import solve_field
 from skybake.luts.transmittance import build_columns
 from skybake.optics.legendre import truncate_peaks
@@ -32,7 +33,7 @@ def thick_medium(optical_depth):
 def test_light_that_reaches_the_ground_is_that_of_paths(optical_depth, tolerance):
     medium = thick_medium(optical_depth)
     padded = pad_wavelengths(medium)
-    cut = truncate_peaks(padded, 10)
+    cut = truncate_peaks(padded, ORDER)
     field = solve_field(cut, build_columns(padded))
     sky = np.empty(padded.ground_albedo.size)
     fill_ground_irradiance(field, 0.9, np.empty(4), sky)
@@ -49,7 +50,7 @@ def test_light_that_reaches_the_ground_is_that_of_paths(optical_depth, tolerance
 def test_depth_30_lets_as_much_light_through_as_diffusion():
     """Eddington's approximation with delta scaling (Joseph et al. 1976), good to some percent."""
     padded = pad_wavelengths(thick_medium(30.0))
-    cut = truncate_peaks(padded, 10)
+    cut = truncate_peaks(padded, ORDER)
     field = solve_field(cut, build_columns(padded))
     sky = np.empty(padded.ground_albedo.size)
     fill_ground_irradiance(field, 0.9, np.empty(4), sky)

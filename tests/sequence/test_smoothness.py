@@ -17,7 +17,7 @@ VISIBLE = 0.002
 """Relative step that would be half a code value of an eight-bit display, at middle grey."""
 
 MARS_GLORY = np.radians(1.0)
-"""About the point opposite the sun, where Mars' dust has what ten harmonics cannot follow.
+"""About the point opposite the sun, where Mars' dust has what fourteen harmonics cannot follow.
 
 At the horizon there, what makes up for them is 0.9 % of the light, and it ends where the
 last direct light does.
