@@ -19,6 +19,9 @@ from skybake.transport.samples import allocate_samples
 from skybake.transport.threads import run_rows, shares
 from skybake.transport.trace import MAX_ARC, trace
 
+LEAST_FANS = 3
+"""Fans for which a thread's work space is worth its making."""
+
 
 class RayLight(NamedTuple):
     """Light along rays, per unit irradiance of the sun above the air.
@@ -78,6 +81,8 @@ def trace_rays(
     diffuse = np.zeros((r.size, wavelengths), np.float32)
     fans = group_rays(np.stack([r, mu, mu_s, nu], axis=1))
 
+    # A field on less than two altitudes is none.
+    has_field = field.altitude.size > 1
     starts, light = flatten(fans.starts), flatten(diffuse)
     sources = [flatten(each) for each in (cut, PEAK_NODES, columns)]
     medium, bundle, scattered = map(flatten, (cut.medium, fans, single))
@@ -85,16 +90,16 @@ def trace_rays(
 
     def work(begin: int, end: int) -> None:
         work_space = allocate_samples(cut.medium)
-        samples, scratch = flatten(work_space), flatten(allocate_scratch(field, fans))
+        samples = flatten(work_space)
+        scratch = flatten(allocate_scratch(field, fans)) if has_field else None
         while begin < end:
             stop = trace(medium, shells, max_arc, starts, begin, end, samples)
             batch = bundle, begin, stop, samples
             sunlit = allocate_sunlit(cut.medium, int(work_space.number[: stop - begin].max()))
             add_single_scattering(*sources, *batch, sunlit, scattered, light)
-            # A field on less than two altitudes is none.
-            if field.altitude.size > 1:
+            if has_field:
                 add_diffuse(*moments, medium, *batch, scratch, light)
             begin = stop
 
-    run_rows(len(fans.starts), work, chunk=max(1, len(fans.starts) // shares(32)))
+    run_rows(len(fans.starts), work, chunk=max(LEAST_FANS, len(fans.starts) // shares(32)))
     return RayLight(single, diffuse)

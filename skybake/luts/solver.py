@@ -9,7 +9,7 @@ import numpy as np
 
 from skybake.errors import InputError
 from skybake.luts.anderson import Anderson
-from skybake.luts.fans import Fans, group_rays
+from skybake.luts.fans import group_rays
 from skybake.luts.field import DiffuseField, lower_order, raise_order, sum_fields
 from skybake.luts.grid import (
     ORDER,
@@ -24,8 +24,8 @@ from skybake.luts.multiple import add_diffuse, allocate_scratch, side_by_side
 from skybake.luts.ray import trace_rays
 from skybake.optics.legendre import Truncation, legendre_polynomials
 from skybake.optics.medium import Array
-from skybake.transport.arguments import flatten
-from skybake.transport.samples import Samples, allocate_samples
+from skybake.transport.arguments import Flat, flatten
+from skybake.transport.samples import allocate_samples
 from skybake.transport.shells import altitude_shells
 from skybake.transport.threads import run_rows
 from skybake.transport.trace import trace
@@ -205,13 +205,13 @@ def _shape(grid: Grid) -> tuple[int, int, int]:
 
 
 class Batch(NamedTuple):
-    """Directions `begin` to `end` of the altitude `node` of a grid, as fans, and their samples."""
+    """Directions `begin` to `end` of a grid's altitude `node`, as `Fans`, and their `Samples`."""
 
     node: int
-    fans: Fans
+    fans: Flat
     begin: int
     end: int
-    samples: Samples
+    samples: Flat
 
 
 def _trace_grid(cut: Truncation, grid: Grid) -> list[Batch]:
@@ -224,14 +224,15 @@ def _trace_grid(cut: Truncation, grid: Grid) -> list[Batch]:
         while begin < end:
             samples = allocate_samples(cut.medium)
             stop = trace(cut.medium, shells, ARC, fans.starts, begin, end, samples)
-            batches.append(Batch(node, fans, begin, stop, samples))
+            batches.append(Batch(node, flatten(fans), begin, stop, flatten(samples)))
             begin = stop
     return batches
 
 
 def _fan_out(cut: Truncation, grid: Grid, traced: list[Batch]) -> list[Batch]:
     """Give traced directions the suns and azimuths of a grid."""
-    fans = [group_rays(_rays_at(cut, grid, node)) for node in range(grid.altitude.size)]
+    nodes = range(grid.altitude.size)
+    fans = [flatten(group_rays(_rays_at(cut, grid, node))) for node in nodes]
     return [batch._replace(fans=fans[batch.node]) for batch in traced]
 
 
@@ -245,15 +246,20 @@ def _scatter(
 
     def work(first: int, last: int) -> None:
         for batch in batches[first:last]:
-            scratch = allocate_scratch(field, batch.fans)
+            scratch = allocate_scratch(field, batch.fans.value)
             add_diffuse(*light, *batch[1:], scratch, out[batch.node])
 
     run_rows(len(batches), work)
     scattered = field._replace(
         radiance=np.empty_like(field.radiance), ground=np.empty_like(field.ground)
     )
-    for i in range(nodes):
-        project(grid, i, out[i].reshape(*_shape(grid), -1), scattered)
+    shape = *_shape(grid), wavelengths
+
+    def store(first: int, last: int) -> None:
+        for i in range(first, last):
+            project(grid, i, out[i].reshape(shape), scattered)
+
+    run_rows(nodes, store)
     return scattered
 
 

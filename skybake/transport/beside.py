@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 from skybake.transport.cache import cache_directory
 from skybake.transport.threads import thread_count
+
+PAUSE = 0.01
+"""Time between two looks for a file. [s]"""
 
 
 @contextmanager
@@ -20,8 +25,8 @@ def compile_beside(module: str, names: frozenset[str]) -> Iterator[None]:
     module : str
         Compiles them when it is run.
     names : frozenset of str
-        The kernels; whoever calls one waits until the process has ended, and compiles
-        itself what it then still does not find.
+        The kernels; whoever calls one waits until the process has written it or has
+        ended, and then compiles itself what it does not find.
     """
     if cache_directory() is not None and thread_count() > 1:
         _beside.start([sys.executable, "-m", module], names)
@@ -31,11 +36,25 @@ def compile_beside(module: str, names: frozenset[str]) -> Iterator[None]:
         _beside.stop()
 
 
-def wait_for(name: str) -> bool:
-    """Wait for the process if it compiles a kernel of that name; returns whether it does."""
+def wait_for(name: str, path: Path) -> bool:
+    """Wait for a file if the process writes it.
+
+    Parameters
+    ----------
+    name : str
+        The kernel.
+    path : Path
+        The file that holds it, which appears whole.
+
+    Returns
+    -------
+    bool
+        Whether it may be there now.
+    """
     if name not in _beside.names:
         return False
-    _beside.wait()
+    while not path.exists() and _beside.runs():
+        time.sleep(PAUSE)
     return True
 
 
@@ -51,15 +70,14 @@ class _Beside:
         self._process = subprocess.Popen(command, stdin=nothing, stdout=nothing, stderr=nothing)
         self.names = names
 
-    def wait(self) -> None:
-        if self._process is not None:
-            self._process.wait()
-        self.names = frozenset()
+    def runs(self) -> bool:
+        return self._process is not None and self._process.poll() is None
 
     def stop(self) -> None:
         if self._process is not None:
             self._process.terminate()
-        self.wait()
+            self._process.wait()
+        self.names = frozenset()
 
 
 _beside = _Beside()

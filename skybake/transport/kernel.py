@@ -78,7 +78,7 @@ class Kernel:
 
     def _load(self, path: Path) -> MachineCode | None:
         content = read_sealed(path)
-        if content is None and beside.wait_for(self.py_func.__name__):
+        if content is None and beside.wait_for(self.py_func.__name__, path):
             content = read_sealed(path)
         return None if content is None else MachineCode.from_bytes(content)
 
