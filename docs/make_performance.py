@@ -79,6 +79,7 @@ def _ratios(medians: dict[str, Any]) -> dict[str, str]:
         return f"{large[figure] / medians[other][figure]:.2f} times"
 
     return {
+        "floor": f"{medians['floor 4096x2048']['wall']:.2f}",
         "floor_wall": ratio("wall", "floor 4096x2048"),
         "mitsuba_cpu": ratio("cpu", "Mitsuba 4096x2048"),
         "blender_cpu": ratio("cpu", "Blender 4096x2048"),
