@@ -11,12 +11,14 @@ from skybake.formats.reader import read_whole_attributes
 from tests.cli.runs import AS_A_USER, installed, listing, run, run_on_terminal, start
 from tests.sequence.runs import QUICK, bake, contents, wait_for
 
+ALL = "1-80"
+
 
 @pytest.fixture(scope="module")
 def undisturbed(tmp_path_factory):
-    """Bytes of 40 frames that nothing disturbed, by name, with their manifest."""
+    """Bytes of 80 frames that nothing disturbed, by name, with their manifest."""
     folder = tmp_path_factory.mktemp("undisturbed")
-    bake(folder, "--frames", "1-40")
+    bake(folder, "--frames", ALL)
     return contents(folder)
 
 
@@ -27,11 +29,12 @@ def frames(folder):
     }
 
 
-def killed(folder, delay):
-    """Kill a sequence a while after it has begun to write."""
-    process = start(*QUICK, "-o", "a.#.exr", "--frames", "1-40", "--skip-existing", cwd=folder)
-    before = set(listing(folder))
+def killed(folder, more, delay):
+    """Kill a sequence a while after it has begun to write, and has baked so many frames more."""
+    process = start(*QUICK, "-o", "a.#.exr", "--frames", ALL, "--skip-existing", cwd=folder)
+    before, baked = set(listing(folder)), len(frames(folder))
     wait_for(lambda: set(listing(folder)) - before, process)
+    wait_for(lambda: len(frames(folder)) >= baked + more, process)
     time.sleep(delay)
     process.kill()
     process.communicate(timeout=60)
@@ -41,15 +44,15 @@ def killed(folder, delay):
 def test_a_run_that_is_killed_ten_times_bakes_each_frame_once(tmp_path, undisturbed):
     chance = np.random.default_rng(40)
     done = {}
-    for _ in range(10):
-        assert killed(tmp_path, chance.uniform(0.0, 0.25)) == -signal.SIGKILL
+    for more in (0, 1, 2, 0, 3, 1, 0, 2, 1, 0):
+        assert killed(tmp_path, more, chance.uniform(0.0, 0.05)) == -signal.SIGKILL
         now = frames(tmp_path)
         assert done.items() <= now.items()
         for name in now.keys() - done.keys():
             read_whole_attributes(tmp_path / name)
         done = now
-    assert 10 <= len(done) < 40
-    bake(tmp_path, "--frames", "1-40", "--skip-existing")
+    assert 10 <= len(done) < 80
+    bake(tmp_path, "--frames", ALL, "--skip-existing")
     assert done.items() <= frames(tmp_path).items()
     made = contents(tmp_path)
     assert made.keys() == undisturbed.keys()
@@ -83,7 +86,7 @@ def test_an_interrupt_is_answered_at_once_and_leaves_no_part(
     tmp_path, workers, number, status, word
 ):
     process = start(
-        *(*QUICK, "--frames", "1-40", "-o", "a.#.exr", "--size", "2048x1024", "-q"),
+        *(*QUICK, "--frames", ALL, "-o", "a.#.exr", "--size", "2048x1024", "-q"),
         *("--workers", workers),
         cwd=tmp_path,
     )
@@ -101,7 +104,7 @@ def test_an_interrupt_is_answered_at_once_and_leaves_no_part(
 
 
 def test_two_sequences_in_one_folder_leave_whole_frames(tmp_path, undisturbed):
-    arguments = ("-o", "a.#.exr", "-q", "--frames", "1-40", "--only", "1-12")
+    arguments = ("-o", "a.#.exr", "-q", "--frames", ALL, "--only", "1-12")
     for process in [start(*QUICK, *arguments, cwd=tmp_path) for _ in range(2)]:
         _, errors = process.communicate(timeout=240)
         assert (process.returncode, errors) == (0, "")
@@ -144,7 +147,7 @@ def test_a_frame_that_fails_is_tried_again_and_does_not_stop_the_others(
     tmp_path, undisturbed, is_mended
 ):
     process = start(
-        *(*QUICK, "--frames", "1-40", "--only", "1-9", "-o", "a.#.exr"),
+        *(*QUICK, "--frames", ALL, "--only", "1-9", "-o", "a.#.exr"),
         *("--workers", "1", "--retry", "1"),
         cwd=tmp_path,
     )
