@@ -1,7 +1,7 @@
 """The sky around one observer as a table.
 
 The table holds, for directions around the observer, the RGB that each lobe of
-`skybake.sky.lobes` multiplies. What it interpolates is therefore smooth even
+`skybake.optics.lobes` multiplies. What it interpolates is therefore smooth even
 where a phase function has a peak; the peak is applied per pixel. Directions
 are split at the planet's horizon and, seen from space, at the top of the
 atmosphere, and nothing is interpolated across these edges.
@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from skybake.luts.grid import ORDER
 from skybake.optics.medium import Array
 from skybake.transport.kernel import kernel
 
@@ -25,9 +26,9 @@ LATITUDES_FROM_SPACE = 180
 AZIMUTHS = 97
 AZIMUTHS_FROM_SPACE = 121
 
-RAY_AZIMUTHS = 17
+RAY_AZIMUTHS = ORDER + 3
 """Azimuths of rays where the observer sees no twilight: the diffuse field has orders m up to
-14, and what the sun alone lights is smoother."""
+`ORDER`, and what the sun alone lights is smoother."""
 
 RAY_AZIMUTHS_TWILIGHT = 49
 TWILIGHT_ELEVATION = math.radians(2.0)
