@@ -25,6 +25,8 @@ ENDED_BY_SIGNAL = 128
 
 _ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
 
+_COMMANDS = ("cache", "presets", "preview", "probe", "render", "sequence")
+
 # What Python says, as a RuntimeError, where a thread gets no stack or may not be.
 _NO_THREAD = "can't start new thread"
 
@@ -33,25 +35,21 @@ class _EndedError(BaseException):
     """The process was told to end, by the signal that is its argument."""
 
 
-_COMMANDS = ("cache", "presets", "preview", "probe", "render", "sequence")
-
-
 class _CommandLine(click.Group):
     """A group whose faults are one line on stderr and an exit status.
 
     A command's module, of the same name, is imported when the command is called.
     """
 
-    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
+    def list_commands(self, _ctx: click.Context) -> list[str]:
         """Return the names of all commands."""
         return list(_COMMANDS)
 
-    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:  # noqa: ARG002
+    def get_command(self, _ctx: click.Context, name: str) -> click.Command | None:
         """Return a command, or None if there is none of that name."""
-        if cmd_name not in _COMMANDS:
+        if name not in _COMMANDS:
             return None
-        module = import_module(f"skybake.commands.{cmd_name}")
-        command: click.Command = getattr(module, cmd_name)
+        command: click.Command = getattr(import_module(f"skybake.commands.{name}"), name)
         return command
 
     def main(self, *args: Any, **kwargs: Any) -> NoReturn:

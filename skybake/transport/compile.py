@@ -102,11 +102,11 @@ class _NoEngine:
     def __getattr__(self, name: str) -> Callable[..., None]:
         return lambda *_: None
 
-    def is_symbol_defined(self, name: str) -> bool:  # noqa: ARG002
+    def is_symbol_defined(self, _name: str) -> bool:
         """Claim to know every name."""
         return True
 
-    def get_function_address(self, name: str) -> int:  # noqa: ARG002
+    def get_function_address(self, _name: str) -> int:
         """Return an address that is never called: such functions have no wrapper."""
         return ctypes.addressof(self._nowhere)
 
