@@ -40,5 +40,9 @@ class OutputError(SkybakeError, OSError):
     """A file cannot be written whole; nothing is left under its name."""
 
 
+class CancelledError(Exception):
+    """Work was given up because somebody asked for that; no fault."""
+
+
 class InputError(SkybakeError, ValueError):
     """A value or an input file lies outside what skybake can work with."""

@@ -7,7 +7,7 @@ from typing import Any
 
 import numba
 
-from skybake.luts import field, transmittance
+from skybake.scattering import field, transmittance
 from skybake.transport import density, exponential, geometry, trace
 
 

@@ -10,11 +10,11 @@ import pytest
 import skybake
 from benchmarks.processes import usage
 from benchmarks.render import FLOOR, IMPORTS
-from skybake.luts.atmosphere import build_atmosphere
+from skybake.jit.arguments import Flat
+from skybake.jit.kernel import Kernel
 from skybake.optics.medium import build_medium
+from skybake.scattering.atmosphere import build_atmosphere
 from skybake.sky.sky import WAVELENGTHS
-from skybake.transport.arguments import Flat
-from skybake.transport.kernel import Kernel
 
 
 @pytest.fixture

@@ -12,19 +12,19 @@ from contextlib import AbstractContextManager, nullcontext
 import numpy as np
 
 from skybake.formats.half import fill_halves, half_rows
-from skybake.luts.fans import group_rays
-from skybake.luts.grid import ORDER, empty_field, sun_angles
-from skybake.luts.harmonics import fill_each, harmonics_at
-from skybake.luts.multiple import add_diffuse, allocate_scratch, side_by_side
+from skybake.jit.beside import compile_beside
+from skybake.jit.cache import is_warm
 from skybake.optics.legendre import truncate_peaks
 from skybake.optics.medium import build_medium, pad_wavelengths
 from skybake.preset import load_preset
+from skybake.scattering.fans import group_rays
+from skybake.scattering.grid import ORDER, empty_field, sun_angles
+from skybake.scattering.harmonics import fill_each, harmonics_at
+from skybake.scattering.multiple import add_diffuse, allocate_scratch, side_by_side
 from skybake.sky.pixels import allocate_pixels, fill_directions
 from skybake.sky.sky import WAVELENGTHS
 from skybake.sky.sun import fill_sight_columns
 from skybake.sky.view import SkyView
-from skybake.transport.beside import compile_beside
-from skybake.transport.cache import is_warm
 from skybake.transport.samples import allocate_samples
 
 KERNELS = (fill_each, add_diffuse, fill_sight_columns, fill_directions, fill_halves)

@@ -10,8 +10,6 @@ import numpy as np
 from skybake.colour.observer import xyz_weights
 from skybake.constants import BOLTZMANN, DOBSON_UNIT
 from skybake.errors import InputError, PresetError
-from skybake.luts.grid import ORDER
-from skybake.luts.solver import MAX_DEPTH, check_depth
 from skybake.optics.haze import HAZE_WAVELENGTH, turbidity, visibility
 from skybake.optics.legendre import truncate_peaks
 from skybake.optics.medium import (
@@ -23,6 +21,8 @@ from skybake.optics.medium import (
 )
 from skybake.optics.spectrum import limb_darkening, star_irradiance, star_spectrum
 from skybake.preset import Absorber, Gas, Planet
+from skybake.scattering.grid import ORDER
+from skybake.scattering.solver import MAX_DEPTH, check_depth
 from skybake.sky.sky import WAVELENGTHS
 
 FIGURE_WAVELENGTHS = (450.0, 550.0, 650.0)

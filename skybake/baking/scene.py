@@ -10,6 +10,8 @@ import numpy as np
 from skybake.baking.settings import MapSettings
 from skybake.colour.observer import xyz_weights
 from skybake.colour.space import find_colour_space, luminance_weights, rgb_from_xyz
+from skybake.jit.arguments import flatten
+from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.medium import Array
 from skybake.optics.spectrum import star_spectrum
 from skybake.preset import Planet
@@ -18,8 +20,6 @@ from skybake.sky.pixels import allocate_pixels, fill_directions
 from skybake.sky.sky import WAVELENGTHS, Sky
 from skybake.sky.sun import SunDisc
 from skybake.sky.view import SkyView
-from skybake.transport.arguments import flatten
-from skybake.transport.threads import run_rows, shares
 
 PROBE_ZENITHS = 192
 PROBE_AZIMUTHS = 256
@@ -54,17 +54,21 @@ class Scene:
         The world.
     settings : MapSettings
         The observer, the sun, the colour space and the scale.
+    workers : Workers, optional
+        Who does the work.
     """
 
-    def __init__(self, planet: Planet, settings: MapSettings) -> None:
+    def __init__(self, planet: Planet, settings: MapSettings, workers: Workers = ALL_CPUS) -> None:
         self.planet = planet
         self.settings = settings
+        self.workers = workers
         self.sky = Sky(
             planet,
             settings.sun_elevation,
             settings.altitude,
             sun_azimuth=settings.sun_azimuth,
             method=settings.method,
+            workers=workers,
         )
         self.sun = SunDisc(self.sky)
         self.sun_zenith = math.pi / 2.0 - settings.sun_elevation
@@ -130,5 +134,5 @@ class Scene:
             scratch = allocate_pixels(self.view, columns)
             fill_directions(*pixels, first, last, scratch, out[first:last])
 
-        run_rows(rows, work, chunk=128 // shares(8))
+        self.workers.run_rows(rows, work, chunk=128 // self.workers.shares(8))
         return out

@@ -14,9 +14,9 @@ from skybake import reference
 from skybake.baking.companion import beside
 from skybake.baking.settings import CUBE_LAYOUTS, MapSettings
 from skybake.baking.write import bake
-from skybake.luts.atmosphere import build_atmosphere
 from skybake.optics.medium import build_medium
 from skybake.preset import Planet, load_preset
+from skybake.scattering.atmosphere import build_atmosphere
 from skybake.sky.sky import METHODS, WAVELENGTHS, Sky
 
 SMALL = MapSettings(width=16)

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -25,10 +24,10 @@ from skybake.formats.preview import check_preview, open_preview
 from skybake.formats.scanlines import Rows
 from skybake.formats.spec import Attribute, MapSpec
 from skybake.formats.writer import MapWriter, check_map_path, open_maps
+from skybake.jit.workers import Workers
 from skybake.preset import Planet, load_preset
 from skybake.projection.cubemap import FACES
 from skybake.projection.equirect import column_bearings, row_zeniths
-from skybake.transport.threads import runs_alone
 
 BAND_ROWS = 128
 HALF_LARGEST = 60000.0
@@ -192,7 +191,7 @@ def bake_scene(
             show = stack.enter_context(open_preview(preview, view=preview_view, texts=texts))
             draw = partial(show_scene, scene, show, preview_ev)
         writers = stack.enter_context(open_maps(specs))
-        _write(panels, writers, progress)
+        _write(panels, writers, scene.workers, progress)
         if draw is not None:
             draw()
     return Baked(
@@ -236,7 +235,10 @@ def _pixel(scene: Scene, settings: MapSettings, peak: float) -> Literal["half", 
 
 
 def _write(
-    panels: dict[Path, Panel], writers: dict[Path, MapWriter], progress: Progress | None
+    panels: dict[Path, Panel],
+    writers: dict[Path, MapWriter],
+    workers: Workers,
+    progress: Progress | None,
 ) -> None:
     bands = [
         (path, first, min(first + BAND_ROWS, panel.height))
@@ -244,23 +246,12 @@ def _write(
         for first in range(0, panel.height, BAND_ROWS)
     ]
 
-    def compute(path: Path, first: int, last: int) -> Rows:
-        return writers[path].ready(panels[path].rows(first, last))
+    def compute(band: tuple[Path, int, int]) -> Rows:
+        path, first, last = band
+        return writers[path].ready(panels[path].rows(first, last), workers)
 
-    with ThreadPoolExecutor(1) as ahead:
-        submit = _compute_now if runs_alone() else ahead.submit
-        pending = submit(compute, *bands[0])
-        for i, (path, first, last) in enumerate(bands):
-            rows = pending.result()
-            if i + 1 < len(bands):
-                pending = submit(compute, *bands[i + 1])
-            writers[path].write_ready(first, last, rows)
-            if progress is not None:
-                progress((i + 1) / len(bands))
-
-
-def _compute_now(work: Callable[..., Rows], *arguments: Any) -> Future[Rows]:
-    """Take the place of a thread where all of them are busy."""
-    done: Future[Rows] = Future()
-    done.set_result(work(*arguments))
-    return done
+    computed = workers.ahead(compute, bands)
+    for i, ((path, first, last), rows) in enumerate(zip(bands, computed, strict=True)):
+        writers[path].write_ready(first, last, rows)
+        if progress is not None:
+            progress((i + 1) / len(bands))

@@ -15,7 +15,7 @@ from skybake.commands.report import notice
 from skybake.errors import OutputError
 
 if TYPE_CHECKING:
-    from skybake.transport.cache import Usage
+    from skybake.jit.cache import Usage
 
 _MEGABYTE = 1e6
 
@@ -33,7 +33,7 @@ def info(as_json: bool) -> None:
     SKYBAKE_CACHE_DIR names another place than the user's cache folder. Folders that were not used
     for 30 days go when a new version makes its own; of atmospheres the oldest go beyond 1 GB.
     """
-    from skybake.transport.cache import cache_root, cache_usage, version_directory
+    from skybake.jit.cache import cache_root, cache_usage, version_directory
 
     root, present = cache_root(), version_directory()
     usages = cache_usage()
@@ -57,7 +57,7 @@ def clear() -> None:
 
     Other files in the folder stay.
     """
-    from skybake.transport.cache import cache_usage, clear_cache
+    from skybake.jit.cache import cache_usage, clear_cache
 
     before = cache_usage()
     clear_cache()
@@ -90,7 +90,7 @@ def warm(presets: tuple[str, ...], quiet: bool) -> None:
     started = time.perf_counter()
     say = _silent if quiet else notice
 
-    from skybake.transport.cache import check_cache
+    from skybake.jit.cache import check_cache
 
     check_cache()
 

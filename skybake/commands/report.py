@@ -27,7 +27,7 @@ def announce(output: Path) -> None:
 
 def announce_kernels() -> None:
     """Say on the first run why it takes longer."""
-    from skybake.transport.cache import is_warm
+    from skybake.jit.cache import is_warm
 
     if not is_warm():
         notice("compiling kernels, once for this version")

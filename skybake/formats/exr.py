@@ -13,6 +13,7 @@ from skybake.formats.compression import ZIP_LEVEL, largest_value, parse_compress
 from skybake.formats.half import half_rows
 from skybake.formats.scanlines import Rows, ScanlineWriter
 from skybake.formats.spec import UNDATED, Attribute, MapSpec
+from skybake.jit.workers import ALL_CPUS, Workers
 
 # Only this name becomes OpenEXR's `envmap`; under the name `envmap` OpenImageIO would
 # write an integer that no reader takes for it.
@@ -42,11 +43,11 @@ class ExrWriter(ScanlineWriter):
         self._spec = spec
         self._largest = largest_value(spec.pixel, spec.compression)
 
-    def ready(self, rows: Rows) -> Rows:
+    def ready(self, rows: Rows, workers: Workers = ALL_CPUS) -> Rows:
         """Check that rows fit their type, and convert them to it."""
         ready, largest = rows, math.nan
         if self._spec.pixel == "half" and rows.dtype == np.float32:
-            ready, largest = half_rows(np.asarray(rows, np.float32))
+            ready, largest = half_rows(np.asarray(rows, np.float32), workers)
         if not largest <= self._largest:
             self._check_range(rows)
         return ready

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from skybake.transport.kernel import kernel
-from skybake.transport.threads import run_rows
+from skybake.jit.kernel import kernel
+from skybake.jit.workers import ALL_CPUS, Workers
 
 _SIGN = np.int32(-(2**31))
 _MAGNITUDE = np.int32(2**31 - 1)
@@ -16,13 +16,17 @@ _SMALLEST_NORMAL = np.int32((127 - 14) << 23)
 _REBIAS = np.int32((15 - 127) << 23)
 
 
-def half_rows(rows: npt.NDArray[np.float32]) -> tuple[npt.NDArray[np.float16], float]:
-    """Round to the nearest half floats, ties to even, on all threads.
+def half_rows(
+    rows: npt.NDArray[np.float32], workers: Workers = ALL_CPUS
+) -> tuple[npt.NDArray[np.float16], float]:
+    """Round to the nearest half floats, ties to even.
 
     Parameters
     ----------
     rows : ndarray of float32, shape (row, column, channel)
         What has a magnitude of 65520 or more, or is no number, becomes anything.
+    workers : Workers, optional
+        Who does the work.
 
     Returns
     -------
@@ -42,7 +46,7 @@ def half_rows(rows: npt.NDArray[np.float32]) -> tuple[npt.NDArray[np.float16], f
     def work(first: int, last: int) -> None:
         largest.append(fill_halves(values[first:last], bits[first:last], halves[first:last]))
 
-    run_rows(len(rows), work, chunk=32)
+    workers.run_rows(len(rows), work, chunk=32)
     return out, float(np.int32(max(largest)).view(np.float32))
 
 

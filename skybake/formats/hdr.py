@@ -13,6 +13,7 @@ import OpenImageIO
 from skybake.errors import InputError, OutputError
 from skybake.formats.scanlines import Rows, ScanlineWriter
 from skybake.formats.spec import Attribute, MapSpec
+from skybake.jit.workers import ALL_CPUS, Workers
 
 RADIANCE_EFFICACY = 179.0
 """Luminous efficacy by which Radiance converts between its own radiance and luminance,
@@ -67,7 +68,7 @@ class HdrWriter(ScanlineWriter):
         if kind is None:
             _insert_after_first_line(self._temporary, self._header)
 
-    def ready(self, rows: Rows) -> Rows:
+    def ready(self, rows: Rows, _workers: Workers = ALL_CPUS) -> Rows:
         """Check that rows are finite, and round them to what the format holds."""
         low, high = float(rows.min()), float(rows.max())
         if not (low >= -_LARGEST and high <= _LARGEST):

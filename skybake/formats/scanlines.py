@@ -13,6 +13,7 @@ import OpenImageIO
 
 from skybake.errors import OutputError
 from skybake.formats.partial import write_error
+from skybake.jit.workers import ALL_CPUS, Workers
 
 Rows = npt.NDArray[np.float32] | npt.NDArray[np.float16]
 
@@ -83,7 +84,7 @@ class ScanlineWriter:
         """Write rows `y_begin` to `y_end`, the latter excluded, shape (row, column, channel)."""
         self.write_ready(y_begin, y_end, self.ready(rows))
 
-    def ready(self, rows: Rows) -> Rows:
+    def ready(self, rows: Rows, _workers: Workers = ALL_CPUS) -> Rows:
         """Check rows and turn them into what the file holds, on any thread."""
         return rows
 

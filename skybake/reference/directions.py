@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
+from skybake.jit.shared_kernel import shared_kernel
 from skybake.reference.rays import node_value
-from skybake.transport.shared_kernel import shared_kernel
 
 _GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 _MIX_A = np.uint64(0xBF58476D1CE4E5B9)

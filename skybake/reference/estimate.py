@@ -9,13 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.errors import InputError
+from skybake.jit.workers import ALL_CPUS
 from skybake.optics.medium import Medium
 from skybake.reference.air import Air, air_at
 from skybake.reference.guide import Guide, make_guide
 from skybake.reference.paths import mean_irradiance, mean_radiance
 from skybake.reference.rays import transmittance_to_space
 from skybake.reference.single import single_radiance
-from skybake.transport.threads import run_rows
 
 Array = npt.NDArray[np.float64]
 Direction = tuple[float, float, float]
@@ -124,7 +124,7 @@ def radiance(
                 air, guide, sun, altitude, views[index[0]], first, last, per_batch, _seed(seed, row)
             )
 
-    run_rows(means.size, trace_batches)
+    ALL_CPUS.run_rows(means.size, trace_batches)
     mean, stderr = _mean_and_error(means)
     if orders is None:
         mean += single_scattering(medium, altitude, sun_elevation, view_zenith, relative_azimuth)
@@ -156,7 +156,7 @@ def single_scattering(
             index = np.unravel_index(row, result.shape)
             result[index] = single_radiance(airs[index[1]], sun, altitude, views[index[0]])
 
-    run_rows(result.size, integrate)
+    ALL_CPUS.run_rows(result.size, integrate)
     return result
 
 
@@ -182,7 +182,7 @@ def irradiance(
                 air, guide, sun, altitude, facing, per_batch, _seed(seed, row)
             )
 
-    run_rows(means.size, trace_batches)
+    ALL_CPUS.run_rows(means.size, trace_batches)
     mean, stderr = _mean_and_error(means)
     transmittance = np.array([transmittance_to_space(air, altitude, sun[2]) for air, _ in models])
     direct = transmittance * max(0.0, sun[2])
@@ -197,7 +197,7 @@ def _models(medium: Medium) -> list[tuple[Air, Guide]]:
         for i in range(begin, end):
             guides[i] = make_guide(airs[i])
 
-    run_rows(len(airs), build)
+    ALL_CPUS.run_rows(len(airs), build)
     return list(zip(airs, guides, strict=True))
 
 

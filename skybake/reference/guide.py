@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from skybake.jit.shared_kernel import shared_kernel
 from skybake.reference.directions import uniform
 from skybake.reference.rays import (
     altitude_on_ray,
@@ -22,7 +23,6 @@ from skybake.reference.rays import (
     tangent_altitude,
     transmittance_to_space,
 )
-from skybake.transport.shared_kernel import shared_kernel
 
 ALTITUDES = 17
 SUNS = 97

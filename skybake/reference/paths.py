@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from skybake.jit.shared_kernel import shared_kernel
 from skybake.reference.directions import (
     advance,
     dot,
@@ -24,7 +25,6 @@ from skybake.reference.rays import (
     transmittance_to_space,
 )
 from skybake.reference.stretches import draw_vertex, new_stretches, weigh_stretches
-from skybake.transport.shared_kernel import shared_kernel
 
 TOWARD_SUN = 0.3
 """Share of a path's first turns drawn around the sun: an aureole is never met by chance alone."""

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from skybake.transport.shared_kernel import shared_kernel
+from skybake.jit.shared_kernel import shared_kernel
 
 
 class Cuts(NamedTuple):

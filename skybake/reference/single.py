@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from skybake.jit.shared_kernel import shared_kernel
 from skybake.reference.directions import advance, dot, phase_and_lobe, scattering_at
 from skybake.reference.rays import (
     altitude_on_ray,
@@ -16,7 +17,6 @@ from skybake.reference.rays import (
     trace,
     transmittance_to_space,
 )
-from skybake.transport.shared_kernel import shared_kernel
 
 LONGEST_PIECE = 1e-3
 """Of the planet's radius: 6 km on Earth, over which the sun sinks by 0.06 deg."""

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
+from skybake.jit.shared_kernel import shared_kernel
 from skybake.reference.directions import uniform
 from skybake.reference.guide import look_up
 from skybake.reference.rays import altitude_on_ray, place_at_depth
-from skybake.transport.shared_kernel import shared_kernel
 
 SEGMENTS_PER_STRETCH = 16
 

@@ -11,14 +11,14 @@ from importlib.metadata import version
 from typing import Any
 
 from skybake.errors import InputError
-from skybake.luts.atmosphere import adopt_atmosphere, atmosphere_content
+from skybake.jit.workers import Workers
 from skybake.optics.medium import Medium
 from skybake.preset import Planet
+from skybake.scattering.atmosphere import adopt_atmosphere, atmosphere_content
 from skybake.sequence.frame import Look, Outcome, finish_frame
 from skybake.sequence.plan import Frame, Plan
 from skybake.sequence.pool import Done, Run
 from skybake.sky.sky import Sky
-from skybake.transport.threads import stay_in_thread
 from skybake.version import __version__
 
 CONNECT_WITHIN = 6
@@ -103,10 +103,9 @@ def dask_pool(plan: Plan, look: Look, address: str) -> Iterator[Run]:
 
 def finish_on_worker(frame: Frame, planet: Planet, tables: Tables, look: Look) -> Outcome:
     """Bake a frame on a worker, with tables that came from afar."""
-    stay_in_thread()
     if tables is not None:
         adopt_atmosphere(*tables)
-    return finish_frame(frame, planet, look)
+    return finish_frame(frame, planet, look, Workers(1))
 
 
 def versions() -> dict[str, str]:

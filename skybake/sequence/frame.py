@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -22,12 +22,9 @@ from skybake.colour.exposure import ev_from_luminance
 from skybake.errors import InputError
 from skybake.formats.partial import remove_leftovers
 from skybake.formats.reader import read_whole_attributes
+from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.preset import Planet
 from skybake.sequence.plan import Frame
-
-
-class CancelledError(Exception):
-    """The sequence was interrupted while a frame was being baked."""
 
 
 @dataclass(frozen=True)
@@ -86,9 +83,7 @@ class Outcome:
     thumbnails: Mapping[int, npt.NDArray[np.uint8]]
 
 
-def finish_frame(
-    frame: Frame, planet: Planet, look: Look, is_cancelled: Callable[[], bool] = lambda: False
-) -> Outcome:
+def finish_frame(frame: Frame, planet: Planet, look: Look, workers: Workers = ALL_CPUS) -> Outcome:
     """Bake a frame, unless it is there.
 
     Parameters
@@ -97,25 +92,20 @@ def finish_frame(
         What to bake.
     look : Look
         What to show, and whether existing files count.
-    is_cancelled : callable, optional
-        Asked between the bands of a map.
+    workers : Workers, optional
+        Who does the work.
 
     Raises
     ------
     SkybakeError
         As `skybake.baking.bake`.
     CancelledError
-        If `is_cancelled` said so; no file is left then.
+        If the workers were stopped; no file is left then.
     """
-    work = _Work(frame, planet, look)
+    work = _Work(frame, planet, look, workers)
     light = work.found_light() if look.skip_existing else None
     is_new = light is None
-
-    def stop_if_cancelled(_: float = 0.0) -> None:
-        if is_cancelled():
-            raise CancelledError
-
-    stop_if_cancelled()
+    workers.check()
     files = map_paths(frame.output, frame.settings)
     if light is None:
         baked = bake_scene(
@@ -125,7 +115,6 @@ def finish_frame(
             preview_ev=None if frame.preview is None else work.ev,
             preview_view=look.view,
             attributes=frame.attributes,
-            progress=stop_if_cancelled,
         )
         # As it will be when its files are found instead.
         light = light_from_attributes(attributes_from_light(baked))
@@ -146,12 +135,12 @@ def finish_frame(
 class _Work:
     """A frame's scene, made when it is needed."""
 
-    def __init__(self, frame: Frame, planet: Planet, look: Look) -> None:
-        self._frame, self._planet, self._look = frame, planet, look
+    def __init__(self, frame: Frame, planet: Planet, look: Look, workers: Workers) -> None:
+        self._frame, self._planet, self._look, self._workers = frame, planet, look, workers
 
     @cached_property
     def scene(self) -> Scene:
-        return Scene(self._planet, self._frame.settings)
+        return Scene(self._planet, self._frame.settings, self._workers)
 
     @cached_property
     def ev(self) -> float:

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed, wait
 from contextlib import contextmanager
 
+from skybake.jit.workers import Workers, cpu_count
 from skybake.sequence.frame import Look, Outcome, finish_frame
 from skybake.sequence.plan import Frame, Plan
-from skybake.transport.threads import lone_threads, thread_count
 
 Done = tuple[Frame, Outcome | Exception]
 Run = Callable[[Sequence[Frame]], Iterator[Done]]
@@ -36,15 +36,17 @@ def local_pool(plan: Plan, look: Look, workers: int | None = None) -> Iterator[R
     -----
     Threads: kernels, compression and files hold no lock of the interpreter.
     """
-    workers = min(workers or thread_count(), max(len(plan.frames), 1))
+    workers = min(workers or cpu_count(), max(len(plan.frames), 1))
     stop = threading.Event()
-    threads = ThreadPoolExecutor(1) if workers == 1 else lone_threads(workers)
+    threads = ThreadPoolExecutor(workers)
+    # Where several frames are baked at once, each keeps to its own thread.
+    of_a_frame = Workers(None if workers == 1 else 1, stop)
     pending: dict[Future[Outcome], Frame] = {}
 
     def run(frames: Sequence[Frame]) -> Iterator[Done]:
         pending.clear()
         for frame in frames:
-            future = threads.submit(finish_frame, frame, plan.planet(frame), look, stop.is_set)
+            future = threads.submit(finish_frame, frame, plan.planet(frame), look, of_a_frame)
             pending[future] = frame
         for future in as_completed(pending):
             error = future.exception()

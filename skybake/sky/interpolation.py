@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
+from skybake.jit.kernel import kernel
 from skybake.sky.view import dusk_coordinate, sun_range
-from skybake.transport.kernel import kernel
 
 
 @kernel

@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from skybake.jit.kernel import kernel
 from skybake.optics.medium import Array
 from skybake.sky.interpolation import azimuth_count, azimuth_weights, fill_latitude
 from skybake.sky.view import SkyView
-from skybake.transport.kernel import kernel
 
 
 @kernel

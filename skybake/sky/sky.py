@@ -9,13 +9,14 @@ from pathlib import Path
 import numpy as np
 
 from skybake.errors import InputError
-from skybake.luts.atmosphere import Atmosphere, is_stored, load_atmosphere
-from skybake.luts.ray import RayLight, trace_rays
+from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.lobes import Lobes, pad_lobes, split_phase
 from skybake.optics.medium import Array, build_medium
 from skybake.optics.phase import eval_phase
 from skybake.optics.spectrum import star_irradiance
 from skybake.preset import Planet, load_preset
+from skybake.scattering.atmosphere import Atmosphere, is_stored, load_atmosphere
+from skybake.scattering.ray import RayLight, trace_rays
 from skybake.sky.view import (
     AZIMUTHS,
     AZIMUTHS_FROM_SPACE,
@@ -53,6 +54,8 @@ class Sky:
     method : {"full", "hillaire", "march"}, optional
         All orders of scattering, Hillaire's closure, or single scattering by nested
         marching without tables.
+    workers : Workers, optional
+        Who does the work.
 
     Raises
     ------
@@ -71,6 +74,7 @@ class Sky:
         sun_azimuth: float = math.pi,
         wavelengths: Array | None = None,
         method: str = "full",
+        workers: Workers = ALL_CPUS,
     ) -> None:
         self.planet = preset if isinstance(preset, Planet) else load_preset(preset)
         if not abs(sun_elevation) <= math.pi / 2.0 + 1e-9:
@@ -91,6 +95,7 @@ class Sky:
         self.sun_azimuth = sun_azimuth
         self.altitude = altitude
         self.method = method
+        self.workers = workers
         self.medium = build_medium(self.planet, self.wavelengths)
         self.r = self.medium.r_bottom + max(altitude, LOWEST_EYE)
 
@@ -203,8 +208,8 @@ class Sky:
         mu_s = np.full(mu.shape, math.sin(self.sun_elevation))
         nu = np.clip(nu, -1.0, 1.0)
         if self.method == "march":
-            return RayLight(*march_rays(self.medium, r, mu, mu_s, nu))
-        light = trace_rays(*self.atmosphere[:4], r, mu, mu_s, nu)
+            return RayLight(*march_rays(self.medium, r, mu, mu_s, nu, workers=self.workers))
+        light = trace_rays(*self.atmosphere[:4], r, mu, mu_s, nu, workers=self.workers)
         count = self.medium.ground_albedo.size
         return RayLight(light.single[..., :count], light.diffuse[..., :count])
 
@@ -222,7 +227,7 @@ class Sky:
     @cached_property
     def atmosphere(self) -> Atmosphere:
         """The tables of the air, which depend neither on the observer nor on the sun."""
-        return load_atmosphere(self.medium, self.table_method)
+        return load_atmosphere(self.medium, self.table_method, self.workers)
 
     @property
     def _phase(self) -> Array:

@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 
-from skybake.luts.transmittance import fill_sun_column
+from skybake.jit.kernel import kernel
 from skybake.optics.medium import Array
 from skybake.optics.spectrum import limb_darkening
+from skybake.scattering.transmittance import fill_sun_column
 from skybake.sky.sky import Sky
 from skybake.transport.geometry import distance_to_entry, radius_at
-from skybake.transport.kernel import kernel
 
 RINGS = 24
 SPOKES = 96

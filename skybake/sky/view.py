@@ -15,9 +15,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from skybake.luts.grid import ORDER
+from skybake.jit.kernel import kernel
 from skybake.optics.medium import Array
-from skybake.transport.kernel import kernel
+from skybake.scattering.grid import ORDER
 
 Table = npt.NDArray[np.float32]
 

@@ -1,1 +1,1 @@
-"""Light along a ray: geometry, columns and marching, in numba kernels."""
+"""Straight rays through the air: geometry, density, shells, samples."""

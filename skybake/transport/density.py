@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
+from skybake.jit.kernel import kernel
 from skybake.transport.geometry import radius_at
-from skybake.transport.kernel import kernel
 
 # Gauss-Legendre collocation with two points (Butcher tableau of the Gauss
 # method of order 4): points at GAUSS_LOW and 1 - GAUSS_LOW of a step, and the

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from skybake.transport.kernel import kernel
+from skybake.jit.kernel import kernel
 
 
 @kernel

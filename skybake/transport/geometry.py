@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from skybake.transport.kernel import kernel
+from skybake.jit.kernel import kernel
 
 
 @kernel

@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 
+from skybake.jit.kernel import kernel
+from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.medium import Array, Medium
 from skybake.transport.density import fill_density
 from skybake.transport.geometry import distance_to_entry, distance_to_exit, radius_at
-from skybake.transport.kernel import kernel
-from skybake.transport.threads import run_rows
 from skybake.transport.trace import ray_limits
 
 VIEW_STEPS = 256
@@ -26,6 +26,7 @@ def march_rays(
     *,
     view_steps: int = VIEW_STEPS,
     light_steps: int = LIGHT_STEPS,
+    workers: Workers = ALL_CPUS,
 ) -> tuple[Array, Array]:
     """March along rays and from each step toward the sun.
 
@@ -39,6 +40,8 @@ def march_rays(
     view_steps, light_steps : int, optional
         Steps along the rays and toward the sun; midpoints, quadratic in
         the distance from the lowest point.
+    workers : Workers, optional
+        Who does the work.
 
     Returns
     -------
@@ -58,7 +61,7 @@ def march_rays(
         scratch = np.empty((2, constituents)), np.empty((2, wavelengths))
         _march(medium, rays, *steps, first, last, *scratch, single, ground)
 
-    run_rows(r.size, work, chunk=32)
+    workers.run_rows(r.size, work, chunk=32)
     return single, ground
 
 

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from skybake.jit.kernel import kernel
 from skybake.transport.density import GAUSS_FAR, GAUSS_LOW, GAUSS_NEAR, GAUSS_SELF, fill_density
 from skybake.transport.exponential import fast_exp
 from skybake.transport.geometry import (
@@ -14,7 +15,6 @@ from skybake.transport.geometry import (
     radius_at,
     squared_closest_approach,
 )
-from skybake.transport.kernel import kernel
 from skybake.transport.samples import MAX_SAMPLES
 
 MAX_ARC = math.radians(0.5)

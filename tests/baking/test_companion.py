@@ -39,8 +39,8 @@ def test_first_render_compiles_each_kernel_for_one_set_of_types(tmp_path):
 def test_kernels_of_a_process_that_failed_are_compiled_by_who_needs_them(tmp_path):
     script = """
 import numpy as np
-from skybake.luts.harmonics import build_harmonics, fill_harmonics
-from skybake.transport.beside import compile_beside
+from skybake.scattering.harmonics import build_harmonics, fill_harmonics
+from skybake.jit.beside import compile_beside
 with compile_beside("skybake.no_such_module", frozenset({"fill_harmonics"})):
     fill_harmonics(build_harmonics(1), 0.5, out := np.empty(3))
 print(out[0] > 0.0)

@@ -7,9 +7,9 @@ import pytest
 
 from skybake.baking.figures import derive_figures, figures_text
 from skybake.errors import InputError, PresetError
-from skybake.luts.atmosphere import build_atmosphere
 from skybake.optics.medium import build_medium
 from skybake.preset import load_preset, preset_names
+from skybake.scattering.atmosphere import build_atmosphere
 from skybake.sky.sky import WAVELENGTHS
 
 

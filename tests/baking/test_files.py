@@ -8,8 +8,8 @@ import pytest
 
 from skybake.baking import MapSettings, bake
 from skybake.errors import OutputError
+from skybake.jit import workers
 from skybake.projection.cubemap import FACES
-from skybake.transport import threads
 from tests.baking.maps import bake_map, pixels
 from tests.formats.maps import listing
 
@@ -101,7 +101,7 @@ def test_radiance_files_tell_how_many_negative_values_they_lost(tmp_path):
 def test_same_map_has_the_same_bytes_whatever_the_threads(tmp_path, monkeypatch):
     first, _ = bake_map(tmp_path / "first.exr", "mars", 5.0)
     second, _ = bake_map(tmp_path / "second.exr", "mars", 5.0)
-    monkeypatch.setattr(threads, "thread_count", lambda: 1)
+    monkeypatch.setattr(workers, "cpu_count", lambda: 1)
     alone, _ = bake_map(tmp_path / "alone.exr", "mars", 5.0)
     assert first.files[0].read_bytes() == second.files[0].read_bytes()
     assert first.files[0].read_bytes() == alone.files[0].read_bytes()

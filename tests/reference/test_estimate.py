@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from skybake.errors import InputError
+from skybake.jit import workers
 from skybake.optics.medium import ALTITUDE_NODES, Medium, altitude_nodes
 from skybake.optics.phase import scattering_angles
 from skybake.reference import irradiance, radiance, single_scattering
@@ -11,7 +12,6 @@ from skybake.reference.air import air_at
 from skybake.reference.guide import make_guide
 from skybake.reference.paths import mean_irradiance
 from skybake.reference.rays import transmittance_to_space
-from skybake.transport import threads
 from tests.truth import (
     TRUTH_WAVELENGTHS,
     henyey_greenstein,
@@ -152,7 +152,7 @@ def test_results_do_not_depend_on_the_number_of_threads(monkeypatch):
     view = (np.radians(-3.0), np.radians([60.0, 95.0]), 0.0)
 
     def run(count):
-        monkeypatch.setattr(threads, "thread_count", lambda: count)
+        monkeypatch.setattr(workers, "cpu_count", lambda: count)
         return radiance(medium, 1.0, *view, samples=320, seed=5)
 
     np.testing.assert_array_equal(run(1), run(3))

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from skybake.luts.ray import trace_rays
+from skybake.scattering.ray import trace_rays
 from skybake.transport.march import march_rays
 from tests.media import cosine_to_sun
 from tests.skies import truth_sky, without_diffuse_light

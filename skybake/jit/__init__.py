@@ -1,0 +1,1 @@
+"""From Python to machine code: compiled kernels, where they are kept, rows on threads."""

@@ -1,0 +1,221 @@
+"""The folder in which compiled kernels and tables stay between runs."""
+
+from __future__ import annotations
+
+import errno
+import functools
+import hashlib
+import os
+import shutil
+import sys
+import time
+import warnings
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+from skybake.errors import OutputError
+from skybake.version import __version__
+
+UNUSED_AFTER = 30 * 86400.0
+"""Age after which the folder of another version goes, if it was not used meanwhile. [s]"""
+
+KERNEL_SUFFIX = ".kernel"
+TABLES_FOLDER = "atmospheres"
+TABLES_SUFFIX = ".tables"
+
+KERNEL_SOURCES = ("jit", "optics", "transport", "scattering", "sky", "formats/half.py")
+_PREFIX = "kernels-"
+_DAY = 86400.0
+_OTHERS_MAY_WRITE = 0o002
+
+
+@functools.cache
+def cache_directory() -> Path | None:
+    """Folder of this version's kernels and tables, or None where there can be none.
+
+    It is named by a digest of the kernels' sources and of what compiles them.
+    SKYBAKE_CACHE_DIR and NUMBA_CACHE_DIR take precedence over the user's cache
+    folder. A folder that others can write to is not used, since a compiled kernel is
+    a program; one that only root can write to, as in an image of a container, is.
+    """
+    directory = version_directory()
+    if directory is None:
+        warn_of_no_cache("SKYBAKE_CACHE_DIR: kernel cache must be given without a home folder")
+        return None
+    is_new = not directory.is_dir()
+    try:
+        directory.mkdir(0o755, parents=True, exist_ok=True)
+    except OSError:
+        warn_of_no_cache(f"{directory}: kernel cache must be writable")
+        return None
+    if not _is_private(directory):
+        warn_of_no_cache(f"{directory}: kernel cache must be writable for its owner only")
+        return None
+    if is_new:
+        _remove_unused(directory.parent)
+    with suppress(OSError):
+        if time.time() - directory.stat().st_mtime > _DAY:
+            os.utime(directory)
+    return directory
+
+
+def check_cache() -> None:
+    """Refuse a folder in which nothing can be kept.
+
+    Raises
+    ------
+    OutputError
+        If it cannot be written to, or `cache_directory` does not use it.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)
+        directory = cache_directory()
+    if directory is None or not os.access(directory, os.W_OK | os.X_OK):
+        raise OutputError(
+            f"{directory or cache_root()}: kernel cache must be a folder that is writable for its "
+            "owner only, got one that is not; SKYBAKE_CACHE_DIR names another"
+        )
+
+
+def cache_root() -> Path | None:
+    """Folder that holds those of all versions; None without a home."""
+    configured = os.environ.get("SKYBAKE_CACHE_DIR") or os.environ.get("NUMBA_CACHE_DIR")
+    return Path(configured) if configured else _user_cache()
+
+
+def version_directory() -> Path | None:
+    """Folder of this version, be it there or not; None without a home."""
+    parent = cache_root()
+    return None if parent is None else parent / f"{_PREFIX}{source_hash(*KERNEL_SOURCES)}"
+
+
+def is_warm() -> bool:
+    """Whether compiled kernels of this version lie on disk."""
+    directory = cache_directory()
+    return directory is not None and any(directory.glob(f"*{KERNEL_SUFFIX}"))
+
+
+@dataclass(frozen=True)
+class Usage:
+    """What a version's folder holds.
+
+    Attributes
+    ----------
+    folder : Path
+        Where.
+    kernels, tables : int
+        How many files of either kind.
+    kernel_bytes, table_bytes : int
+        Their sizes. [byte]
+    """
+
+    folder: Path
+    kernels: int
+    kernel_bytes: int
+    tables: int
+    table_bytes: int
+
+
+def cache_usage() -> list[Usage]:
+    """Return what the folders of all versions hold."""
+    return [_usage(folder) for folder in _folders(cache_root())]
+
+
+def clear_cache() -> None:
+    """Remove the folders of all versions, and nothing else that lies beside them."""
+    for folder in _folders(cache_root()):
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def warn_of_loss(directory: Path, error: OSError) -> None:
+    """Warn once that compiled kernels could not be kept."""
+    is_full = error.errno in {errno.ENOSPC, errno.EDQUOT}
+    _warn_once(f"{directory}: kernel cache must {'have room' if is_full else 'be writable'}")
+
+
+@functools.cache
+def _warn_once(fault: str) -> None:
+    warn_of_no_cache(fault)
+
+
+def warn_of_no_cache(fault: str) -> None:
+    """Warn that every process compiles by itself."""
+    warnings.warn(f"{fault}; compiling anew in every process", RuntimeWarning, stacklevel=3)
+
+
+def _usage(folder: Path) -> Usage:
+    kernels = _sizes(folder, KERNEL_SUFFIX)
+    tables = _sizes(folder / TABLES_FOLDER, TABLES_SUFFIX)
+    return Usage(folder, len(kernels), sum(kernels), len(tables), sum(tables))
+
+
+def _sizes(folder: Path, suffix: str) -> list[int]:
+    sizes = []
+    for path in folder.glob(f"*{suffix}"):
+        # Another process may have removed it.
+        with suppress(FileNotFoundError):
+            sizes.append(path.stat().st_size)
+    return sizes
+
+
+def _folders(parent: Path | None) -> Iterator[Path]:
+    if parent is not None and parent.is_dir():
+        yield from sorted(path for path in parent.glob(f"{_PREFIX}*") if path.is_dir())
+
+
+def _remove_unused(parent: Path) -> None:
+    """Remove what other versions left and no process has used for long."""
+    for folder in _folders(parent):
+        with suppress(OSError):
+            if time.time() - folder.stat().st_mtime > UNUSED_AFTER:
+                shutil.rmtree(folder, ignore_errors=True)
+
+
+def _is_private(directory: Path) -> bool:
+    if not hasattr(os, "getuid"):
+        return True
+    state = directory.stat()
+    return state.st_uid in {0, os.getuid()} and not state.st_mode & _OTHERS_MAY_WRITE
+
+
+@functools.cache
+def source_hash(*sources: str) -> str:
+    """Digest of what compiled kernels depend on beside the processor.
+
+    That is what compiles them and some of our packages and modules, because numba does
+    not notice an edit to a kernel that another file's kernel calls (numba issue 9483).
+    """
+    made_by = (__version__, *_installed("numba"), *_installed("llvmlite"))
+    digest = hashlib.sha256(" ".join((*made_by, sys.implementation.cache_tag)).encode())
+    for path in (Path(__file__).parent.parent / source for source in sources):
+        for file in sorted(path.rglob("*.py")) if path.is_dir() else [path]:
+            digest.update(file.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _installed(package: str) -> list[str]:
+    """Names under which a package's metadata lie, which tell its version.
+
+    Neither is the package imported, nor what importlib.metadata parses mail with, which
+    takes a fiftieth of a render.
+    """
+    spec = find_spec(package)
+    if spec is None or spec.origin is None:
+        return []
+    return sorted(path.name for path in Path(spec.origin).parent.parent.glob(f"{package}-*"))
+
+
+def _user_cache() -> Path | None:
+    """Folder for this program's files by the platform's convention; None without a home."""
+    configured = os.environ.get("LOCALAPPDATA" if sys.platform == "win32" else "XDG_CACHE_HOME")
+    if configured:
+        return Path(configured) / "skybake"
+    try:
+        home = Path.home()
+    except RuntimeError:
+        return None
+    within = {"win32": "AppData/Local", "darwin": "Library/Caches"}.get(sys.platform, ".cache")
+    return home / within / "skybake"

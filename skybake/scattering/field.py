@@ -1,0 +1,210 @@
+"""The diffuse light in the atmosphere: angular moments over altitude and sun angle.
+
+A field of order L holds, at each altitude and solar zenith angle, the real
+spherical harmonics of the radiance up to l = L. Order 0 is an isotropic field.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from skybake.jit.kernel import kernel
+from skybake.optics.medium import Array, Medium, altitude_nodes
+from skybake.scattering.harmonics import Harmonics, build_harmonics
+from skybake.transport.exponential import fast_exp
+
+ANGLE_BINS = 2048
+
+TWILIGHT_SLOPE = 40.0
+TWILIGHT_ONSET = math.radians(5.0)
+
+
+class DiffuseField(NamedTuple):
+    """Diffuse radiance per unit irradiance of the sun, as kernels read it.
+
+    Attributes
+    ----------
+    harmonics : Harmonics
+        Recurrence of the harmonics that `radiance` counts.
+    altitude : ndarray of float64, shape (altitude,)
+        Ascending from 0 to the top. [km]
+    layer : ndarray of float64, shape (ALTITUDE_NODES,)
+        Table of `altitude_layers`: the number of the node below an altitude, and the
+        share of the one above as its fraction.
+    sun_angle : ndarray of float64, shape (sun,)
+        Solar zenith angles, ascending from 0; cubic between. [rad]
+    sun_bin : ndarray of int64, shape (ANGLE_BINS,)
+        First of the four nodes around a solar zenith angle, by equal bins of pi.
+    sun_factor : ndarray of float64, shape (sun - 3, 4)
+        What of `sun_weights` does not depend on the sun, see there.
+    source : ndarray of float64, shape (constituent, order + 1, wavelength)
+        Scattering coefficient times chi_l at density 1. [km⁻¹]
+    radiance : ndarray of float32, shape (altitude, sun, harmonic, wavelength)
+        Moments of the radiance scattered or reflected at least once. [sr⁻¹]
+    ground : ndarray of float64, shape (sun, wavelength)
+        Irradiance of the ground by the sky.
+    """
+
+    harmonics: Harmonics
+    altitude: Array
+    layer: Array
+    sun_angle: Array
+    sun_bin: npt.NDArray[np.int64]
+    sun_factor: Array
+    source: Array
+    radiance: npt.NDArray[np.float32]
+    ground: Array
+
+
+def altitude_layers(medium: Medium, altitude: Array) -> Array:
+    """Where the altitudes of `altitude_nodes` lie between a field's nodes.
+
+    Light varies along with altitude where a layer between two nodes is thin and
+    along with optical depth where it is thick; the share of the upper node is the
+    mean of both, weighted 1 to the layer's optical depth.
+    """
+    fine = altitude_nodes(medium.r_bottom, medium.r_top)
+    extinction = medium.density @ medium.extinction.mean(axis=1)
+    rise = 0.5 * (extinction[1:] + extinction[:-1]) * np.diff(fine)
+    depth = np.concatenate([[0.0], np.cumsum(rise)])
+    node_depth = np.interp(altitude, fine, depth)
+    low = np.clip(np.searchsorted(altitude, fine, side="right") - 1, 0, altitude.size - 2)
+    across = (fine - altitude[low]) / np.maximum(altitude[low + 1] - altitude[low], 1e-300)
+    inside = depth - node_depth[low]
+    share = (across + inside) / (1.0 + node_depth[low + 1] - node_depth[low])
+    layer: Array = low + np.clip(share, 0.0, 1.0)
+    return layer
+
+
+def sun_bins(sun_angle: Array) -> npt.NDArray[np.int64]:
+    """Table from equal bins of the solar zenith angle to the first of four nodes.
+
+    It holds for the start of a bin; bins are narrower than the intervals between
+    nodes, so a lookup moves on by one node at most.
+    """
+    starts = np.arange(ANGLE_BINS) * (math.pi / ANGLE_BINS)
+    interval = np.searchsorted(sun_angle, starts, side="right") - 1
+    return np.clip(interval - 1, 0, sun_angle.size - 4)
+
+
+def sun_factors(sun_angle: Array) -> Array:
+    """Denominators of Lagrange's cubics through four nodes, and how dark it is at each.
+
+    Returns
+    -------
+    ndarray of float64, shape (sun - 3, 4)
+        Inverse of the product of distances to the other three nodes and of
+        exp(log_twilight) at the node.
+    """
+    first = np.arange(sun_angle.size - 3)[:, None]
+    nodes = sun_angle[first + np.arange(4)]
+    distance = nodes[:, :, None] - nodes[:, None, :] + np.eye(4)
+    factor: Array = 1.0 / (
+        distance.prod(axis=2) * np.exp(np.vectorize(log_twilight.py_func)(nodes))
+    )
+    return factor
+
+
+def sum_fields(field: DiffuseField, other: DiffuseField, factor: float) -> DiffuseField:
+    """Add `factor` times another field on the same nodes."""
+    return field._replace(
+        radiance=field.radiance + np.float32(factor) * other.radiance,
+        ground=field.ground + factor * other.ground,
+    )
+
+
+def lower_order(field: DiffuseField, order: int) -> DiffuseField:
+    """Keep the harmonics of a field up to an order."""
+    kept = field.harmonics.degree <= order
+    return field._replace(
+        harmonics=build_harmonics(order),
+        source=np.ascontiguousarray(field.source[:, : order + 1]),
+        radiance=np.ascontiguousarray(field.radiance[:, :, kept]),
+    )
+
+
+def raise_order(solved: DiffuseField, first: DiffuseField, fine: DiffuseField) -> DiffuseField:
+    """Add to `fine` what a field of lower order gained over its own first scattering."""
+    radiance = fine.radiance.copy()
+    kept = fine.harmonics.degree <= solved.harmonics.order
+    radiance[:, :, kept] += solved.radiance - first.radiance
+    return fine._replace(radiance=radiance, ground=fine.ground + solved.ground - first.ground)
+
+
+@kernel
+def fast_acos(x):
+    """Arc cosine within 2e-8 rad (Abramowitz and Stegun 4.4.46), without a library call."""
+    a = min(abs(x), 1.0)
+    series = 1.5707963050 + a * (
+        -0.2145988016
+        + a
+        * (
+            0.0889789874
+            + a
+            * (
+                -0.0501743046
+                + a * (0.0308918810 + a * (-0.0170881256 + a * (0.0066700901 - a * 0.0012624911)))
+            )
+        )
+    )
+    positive = math.sqrt(1.0 - a) * series
+    return positive if x >= 0.0 else math.pi - positive
+
+
+@kernel
+def log_twilight(angle):
+    """Logarithm of how dark twilight is, roughly: 0 by day, then falling by 0.7 a degree."""
+    below = angle - 0.5 * math.pi
+    if below <= 0.0:
+        return 0.0
+    if below < TWILIGHT_ONSET:
+        return -TWILIGHT_SLOPE * below * below / (2.0 * TWILIGHT_ONSET)
+    return -TWILIGHT_SLOPE * (below - 0.5 * TWILIGHT_ONSET)
+
+
+@kernel
+def sun_weights(field, mu_s, out):
+    """First node and weights of the four nodes around a sun's position.
+
+    Lagrange's cubic through the values divided by exp(log_twilight), which differ
+    little from node to node even where twilight falls by half between them.
+    """
+    angle = min(fast_acos(mu_s), field.sun_angle[-1])
+    j = field.sun_bin[min(int(angle * (ANGLE_BINS / math.pi)), ANGLE_BINS - 1)]
+    if angle > field.sun_angle[j + 2] and j + 4 < field.sun_angle.size:
+        j += 1
+    xa, xb = angle - field.sun_angle[j], angle - field.sun_angle[j + 1]
+    xc, xd = angle - field.sun_angle[j + 2], angle - field.sun_angle[j + 3]
+    here = fast_exp(log_twilight(angle)) if angle > 0.5 * math.pi else 1.0
+    low, high = here * xa * xb, here * xc * xd
+    out[0] = field.sun_factor[j, 0] * xb * high
+    out[1] = field.sun_factor[j, 1] * xa * high
+    out[2] = field.sun_factor[j, 2] * xd * low
+    out[3] = field.sun_factor[j, 3] * xc * low
+    return j
+
+
+@kernel
+def altitude_weight(field, h):
+    """Lower node around an altitude and the share of the upper one."""
+    last = field.layer.size - 1
+    x = math.sqrt(min(max(h / field.altitude[-1], 0.0), 1.0)) * last
+    i = min(int(x), last - 1)
+    layer = field.layer[i] + (x - i) * (field.layer[i + 1] - field.layer[i])
+    low = min(int(layer), field.altitude.size - 2)
+    return low, layer - low
+
+
+@kernel
+def fill_ground_irradiance(field, mu_s, weights, out):
+    """Write the sky's irradiance of the ground to `out`, shape (wavelength,)."""
+    j = sun_weights(field, min(max(mu_s, -1.0), 1.0), weights)
+    for k in range(out.size):
+        value = 0.0
+        for q in range(4):
+            value += weights[q] * field.ground[j + q, k]
+        out[k] = max(value, 0.0)

@@ -1,0 +1,256 @@
+"""Light that the air along rays scatters out of the diffuse field, or the ground reflects."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from skybake.jit.kernel import kernel
+from skybake.optics.medium import Array
+from skybake.scattering.fans import Fans
+from skybake.scattering.field import (
+    DiffuseField,
+    altitude_weight,
+    fill_ground_irradiance,
+    sun_weights,
+)
+from skybake.scattering.harmonics import fill_harmonics
+from skybake.transport.geometry import radius_at
+
+NEGLIGIBLE = 3e-4
+"""Share of a ray's scattering below which an order l of a sample is left out."""
+
+
+class Scratch(NamedTuple):
+    """Work space of `add_diffuse`; each thread needs its own.
+
+    Attributes
+    ----------
+    node, weights, cosine : ndarray, shape (ray,), (ray, 4) and (ray,)
+        Where between nodes the sun stands for each ray of a fan, and in which azimuth.
+    fourier : ndarray of float32, shape (sun, order m * wavelength)
+        Sums over degrees l at the nodes of the sun's angle.
+    series : ndarray of float32, shape (order m * wavelength,)
+        The same between nodes.
+    harmonic, factor : ndarray, shape (harmonic,) and (harmonic * wavelength,)
+        Spherical harmonics, and what of them is scattered.
+    scattering : ndarray of float32, shape (degree, wavelength)
+        What a step scatters.
+    weight, negligible, sky : ndarray, shape (wavelength,)
+        Of a step, of a ray, and on the ground.
+    """
+
+    node: npt.NDArray[np.int64]
+    weights: Array
+    cosine: Array
+    fourier: npt.NDArray[np.float32]
+    series: npt.NDArray[np.float32]
+    harmonic: Array
+    factor: npt.NDArray[np.float32]
+    scattering: npt.NDArray[np.float32]
+    weight: npt.NDArray[np.float32]
+    negligible: npt.NDArray[np.float32]
+    sky: Array
+
+
+def allocate_scratch(field: DiffuseField, fans: Fans) -> Scratch:
+    """Make the work space for fans in a field."""
+    suns, harmonics, wavelengths = field.radiance.shape[1:]
+    widest = int(np.diff(fans.first).max())
+    orders = field.harmonics.order + 1
+    return Scratch(
+        node=np.empty(widest, np.int64),
+        weights=np.empty((widest, 4)),
+        cosine=np.empty(widest),
+        fourier=np.empty((suns, orders * wavelengths), np.float32),
+        series=np.empty(orders * wavelengths, np.float32),
+        harmonic=np.empty(harmonics),
+        factor=np.empty(harmonics * wavelengths, np.float32),
+        scattering=np.empty((orders, wavelengths), np.float32),
+        weight=np.empty(wavelengths, np.float32),
+        negligible=np.empty(wavelengths, np.float32),
+        sky=np.empty(wavelengths),
+    )
+
+
+def side_by_side(field: DiffuseField) -> npt.NDArray[np.float32]:
+    """Moments of a field with harmonics and wavelengths in one row, as a view."""
+    altitudes, suns, harmonics, wavelengths = field.radiance.shape
+    return field.radiance.reshape(altitudes, suns, harmonics * wavelengths)
+
+
+@kernel
+def add_diffuse(field, radiance, medium, fans, begin, end, samples, scratch, out):
+    """Add the light that rays bring out of the diffuse field.
+
+    Parameters
+    ----------
+    field : DiffuseField
+        The light to be scattered.
+    radiance : ndarray of float32, shape (altitude, sun, harmonic * wavelength)
+        Its moments once more, from `side_by_side`.
+    medium : Medium
+        The atmosphere.
+    fans : Fans
+        The rays.
+    begin, end, samples
+        Fans, and the result of `trace` for their starts.
+    scratch : Scratch
+        Work space.
+    out : ndarray of float32, shape (ray, wavelength)
+        Receives radiance per unit irradiance. [sr⁻¹]
+
+    Notes
+    -----
+    At a sample the sum over degrees l, which rays of a fan share, is done first,
+    at each node of the sun's angle that any of them needs; a ray then sums orders m.
+    """
+    wavelengths = out.shape[1]
+    node, weights, cosine = scratch.node, scratch.weights, scratch.cosine
+    fourier, series = scratch.fourier, scratch.series
+    harmonic, factor, scattering = scratch.harmonic, scratch.factor, scratch.scattering
+    weight, negligible, sky = scratch.weight, scratch.negligible, scratch.sky
+    for fan in range(begin, end):
+        i, count = fans.first[fan], fans.first[fan + 1] - fans.first[fan]
+        r, mu = fans.starts[fan, 0], fans.starts[fan, 1]
+        first = samples.first[fan - begin]
+        last = first + samples.number[fan - begin]
+        negligible[:] = 0.0
+        for n in range(first, last):
+            for c in range(field.source.shape[0]):
+                density = NEGLIGIBLE * samples.density[n, c]
+                for k in range(wavelengths):
+                    negligible[k] += density * field.source[c, 0, k] * samples.weight[n, k]
+        # The field is smooth within a step, so that its two samples share a lookup where
+        # the middle of what they scatter lies.
+        for n in range(first, last, 2):
+            _fill_scattering(field, samples, n, weight, scattering)
+            degrees = _count_degrees(scattering, negligible)
+            if degrees == 0:
+                continue
+            share = _second_share(field, samples, n)
+            t = (1.0 - share) * samples.distance[n] + share * samples.distance[n + 1]
+            radius = radius_at(r, mu, t)
+            mu_here = min(max((r * mu + t) / radius, -1.0), 1.0)
+            least, most = _fill_suns(
+                field, fans.rays, i, count, t, radius, mu_here, node, weights, cosine
+            )
+            fill_harmonics(field.harmonics, mu_here, harmonic)
+            _fill_factors(harmonic, scattering, degrees, factor)
+            low, u = altitude_weight(field, radius - medium.r_bottom)
+            for j in range(least, most):
+                below, above = radiance[low, j], radiance[low + 1, j]
+                _sum_degrees(below, above, u, factor, degrees, wavelengths, fourier[j])
+            for q in range(count):
+                _add_orders(fourier, node[q], weights[q], cosine[q], degrees, series, out[i + q])
+        if samples.hits_ground[fan - begin]:
+            length = samples.length[fan - begin]
+            for q in range(count):
+                mu_s = (r * fans.rays[i + q, 2] + length * fans.rays[i + q, 3]) / medium.r_bottom
+                fill_ground_irradiance(field, mu_s, weights[q], sky)
+                for k in range(wavelengths):
+                    reflected = medium.ground_albedo[k] / math.pi * sky[k]
+                    out[i + q, k] += samples.transmittance[fan - begin, k] * reflected
+
+
+@kernel
+def _fill_scattering(field, samples, n, weight, out):
+    """Write weight * scattering coefficient * chi_l of a step's samples, (degree, wavelength)."""
+    out[...] = 0.0
+    for c in range(field.source.shape[0]):
+        low, high = samples.density[n, c], samples.density[n + 1, c]
+        if low + high == 0.0:
+            continue
+        for k in range(weight.size):
+            weight[k] = low * samples.weight[n, k] + high * samples.weight[n + 1, k]
+        for degree in range(out.shape[0]):
+            for k in range(weight.size):
+                out[degree, k] += np.float32(field.source[c, degree, k]) * weight[k]
+
+
+@kernel
+def _second_share(field, samples, n):
+    """Share of a step's scattering, over all wavelengths, that its second sample has."""
+    first = second = 0.0
+    for c in range(field.source.shape[0]):
+        low, high = samples.density[n, c], samples.density[n + 1, c]
+        for k in range(samples.weight.shape[1]):
+            first += field.source[c, 0, k] * low * samples.weight[n, k]
+            second += field.source[c, 0, k] * high * samples.weight[n + 1, k]
+    return second / (first + second) if first + second > 0.0 else 0.5
+
+
+@kernel
+def _count_degrees(scattering, negligible):
+    """Orders l of a sample that matter beside what all samples of the ray scatter."""
+    for degree in range(scattering.shape[0] - 1, -1, -1):
+        needed = 0
+        for k in range(negligible.size):
+            needed += abs(scattering[degree, k]) > negligible[k]
+        if needed > 0:
+            return degree + 1
+    return 0
+
+
+@kernel
+def _fill_suns(field, rays, first, count, t, radius, mu_here, node, weights, cosine):
+    """Find where the sun stands at a sample, for each ray; returns the nodes first and last."""
+    least, most = field.sun_angle.size, 0
+    for q in range(count):
+        r, mu_s, nu = rays[first + q, 0], rays[first + q, 2], rays[first + q, 3]
+        mu_s_here = min(max((r * mu_s + t * nu) / radius, -1.0), 1.0)
+        sines = math.sqrt((1.0 - mu_here * mu_here) * (1.0 - mu_s_here * mu_s_here))
+        across = 1.0 if sines < 1e-12 else (nu - mu_here * mu_s_here) / sines
+        cosine[q] = min(max(across, -1.0), 1.0)
+        node[q] = sun_weights(field, mu_s_here, weights[q])
+        least, most = min(least, node[q]), max(most, node[q])
+    return least, most + 4
+
+
+@kernel
+def _fill_factors(harmonic, scattering, degrees, out):
+    """Write harmonics times what their degree scatters, flat as the moments of a field."""
+    wavelengths = scattering.shape[1]
+    p = 0
+    for degree in range(degrees):
+        for _ in range(degree + 1):
+            value, here = np.float32(harmonic[p]), out[p * wavelengths : (p + 1) * wavelengths]
+            for k in range(here.size):
+                here[k] = value * scattering[degree, k]
+            p += 1
+
+
+@kernel
+def _sum_degrees(below, above, u, factor, degrees, wavelengths, out):
+    """Sum over l of the scattered moments between two altitudes, flat by m and wavelength."""
+    upper = np.float32(u)
+    for q in range(degrees * wavelengths):
+        out[q] = 0.0
+    first = 0
+    for degree in range(degrees):
+        length = (degree + 1) * wavelengths
+        low, high = below[first : first + length], above[first : first + length]
+        scale = factor[first : first + length]
+        for q in range(length):
+            out[q] += scale[q] * (low[q] + upper * (high[q] - low[q]))
+        first += length
+
+
+@kernel
+def _add_orders(fourier, node, weights, cosine, degrees, series, out):
+    """Add a Fourier series in azimuth, interpolated between four sun angles."""
+    a, b = np.float32(weights[0]), np.float32(weights[1])
+    c, d = np.float32(weights[2]), np.float32(weights[3])
+    at_a, at_b, at_c, at_d = fourier[node], fourier[node + 1], fourier[node + 2], fourier[node + 3]
+    for q in range(degrees * out.size):
+        series[q] = a * at_a[q] + b * at_b[q] + c * at_c[q] + d * at_d[q]
+    before, now = np.float32(cosine), np.float32(1.0)
+    twice = np.float32(2.0 * cosine)
+    for m in range(degrees):
+        term = series[m * out.size : (m + 1) * out.size]
+        for k in range(out.size):
+            out[k] += now * term[k]
+        before, now = now, twice * now - before

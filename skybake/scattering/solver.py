@@ -1,0 +1,293 @@
+"""All orders of scattering: the diffuse field by iteration of one scattering after another."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from skybake.errors import InputError
+from skybake.jit.arguments import Flat, flatten
+from skybake.jit.workers import ALL_CPUS, Workers
+from skybake.optics.legendre import Truncation, legendre_polynomials
+from skybake.optics.medium import Array
+from skybake.scattering.anderson import Anderson
+from skybake.scattering.fans import group_rays
+from skybake.scattering.field import DiffuseField, lower_order, raise_order, sum_fields
+from skybake.scattering.grid import (
+    ORDER,
+    Grid,
+    azimuths,
+    build_grid,
+    empty_field,
+    project,
+    vertical_depth,
+)
+from skybake.scattering.multiple import add_diffuse, allocate_scratch, side_by_side
+from skybake.scattering.ray import trace_rays
+from skybake.transport.samples import allocate_samples
+from skybake.transport.shells import altitude_shells
+from skybake.transport.trace import trace
+
+FIRST_SHELLS = 15
+SHELLS = 20
+TOLERANCE = 5e-3
+"""Relative change by the scatterings that follow the last pass, at which iteration ends; of
+these, the next passes would change a tenth."""
+
+COARSE_TOLERANCE = 1e-3
+LEAST_CHANGE = 3e-5
+"""Relative change below which single precision tells no more."""
+
+MAX_PASSES = 20
+MAX_COARSE_PASSES = 400
+
+COARSE_ORDER = 3
+"""Highest harmonic of the field in which light is followed through further scatterings."""
+
+MAX_DEPTH = 30.0
+"""Vertical optical depth up to which the solution is good: where nothing is absorbed, 2 % of
+the light that reaches the ground at depth 10, 6 % at depth 30."""
+
+ARC = math.radians(2.0)
+FIRST_ARC = math.radians(1.5)
+
+
+def solve_field(cut: Truncation, columns: Array, workers: Workers = ALL_CPUS) -> DiffuseField:
+    """Solve for the light that was scattered at least once.
+
+    Parameters
+    ----------
+    cut : Truncation
+        The atmosphere without forward peaks beyond `ORDER`.
+    columns : ndarray
+        Table of `build_columns`.
+    workers : Workers, optional
+        Who does the work.
+
+    Returns
+    -------
+    DiffuseField
+        Moments of all orders of scattering and reflection.
+
+    Raises
+    ------
+    InputError
+        If the iteration does not converge, in air that is optically too thick.
+
+    Notes
+    -----
+    L = L1 + K L, with K one transport and one scattering in the truncated medium,
+    is iterated. The light that the last pass changed is followed through all its
+    further scatterings in a field of few harmonics, where a pass costs a quarter
+    (diffusion synthetic acceleration, with `COARSE_ORDER` for the diffusion): what
+    takes many scatterings to settle is smooth. Two passes in between settle what is
+    not.
+
+    References
+    ----------
+    M. L. Adams and E. W. Larsen, "Fast iterative methods for discrete-ordinates
+    particle transport calculations", Prog. Nucl. Energy 40, 2002, section II.
+    """
+    check_depth(cut)
+    grid = build_grid(cut)
+    coarse_grid = grid._replace(azimuth=azimuths(COARSE_ORDER))
+    traced = _trace_grid(cut, grid)
+    coarse_rays, rays = _fan_out(cut, coarse_grid, traced), _fan_out(cut, grid, traced)
+    first = _first_order(cut, columns, grid, workers)
+
+    def scatter(field: DiffuseField) -> DiffuseField:
+        return _scatter(cut, field, grid, rays, workers)
+
+    def settle(new: DiffuseField, total: DiffuseField) -> DiffuseField:
+        return _settle(cut, new, total, coarse_grid, coarse_rays, workers)
+
+    new = lower_order(first, COARSE_ORDER)
+    field = raise_order(settle(new, new), new, first)
+    for _ in range(MAX_PASSES // 2):
+        once = sum_fields(first, scatter(field), 1.0)
+        twice = sum_fields(first, scatter(once), 1.0)
+        total = lower_order(twice, COARSE_ORDER)
+        new = sum_fields(total, lower_order(once, COARSE_ORDER), -1.0)
+        settled = settle(new, total)
+        field = raise_order(settled, new, twice)
+        change = _relative(_state(settled) - _state(new), _state(total), grid)
+        if change.max() < TOLERANCE:
+            return field
+        if not np.isfinite(change).all():
+            break
+    raise _no_convergence(MAX_PASSES, TOLERANCE, float(change.max()))
+
+
+def check_depth(cut: Truncation) -> None:
+    """Refuse air that is too thick to be solved for.
+
+    Raises
+    ------
+    InputError
+        If its vertical optical depth is above `MAX_DEPTH` at any wavelength.
+    """
+    depth = vertical_depth(cut)
+    if depth > MAX_DEPTH:
+        raise InputError(
+            "multiple scattering: optical depth of the air without forward peaks must be at most "
+            f"{MAX_DEPTH:g} at every wavelength for --method full, got {depth:.3g}; use probe "
+            "--method reference, or --method hillaire"
+        )
+
+
+def _settle(
+    cut: Truncation,
+    new: DiffuseField,
+    total: DiffuseField,
+    grid: Grid,
+    rays: list[Batch],
+    workers: Workers,
+) -> DiffuseField:
+    """Follow light of few harmonics through all its scatterings, to a small part of `total`."""
+    mixing = Anderson(new.ground.size)
+    start, scale = _state(new), _state(total)
+    wavelengths = new.ground.shape[1]
+    sunlit = wavelengths * np.count_nonzero(grid.sun_angle < 0.5 * math.pi)
+    state, previous, left = start, 0.0, 0.0
+    for turn in range(MAX_COARSE_PASSES):
+        image = start + _state(_scatter(cut, _field(new, state), grid, rays, workers))
+        change = _relative(image - state, np.maximum(abs(image), abs(scale)), grid)
+        if turn == 1:
+            # The first step is not mixed yet: the ratio is what one scattering leaves.
+            left = float(change[:sunlit].max()) / max(previous, 1e-30)
+            left = min(max(left, 1e-3), 0.9999)
+        state = mixing.step(state, image)
+        # In thick air a small change is not a small error.
+        if turn > 0 and change.max() < max(COARSE_TOLERANCE * (1.0 - left) / left, LEAST_CHANGE):
+            return _field(new, state)
+        if not np.isfinite(change).all():
+            break
+        previous = float(change[:sunlit].max())
+    raise _no_convergence(MAX_COARSE_PASSES, COARSE_TOLERANCE, float(change.max()))
+
+
+def _relative(change: Array, state: Array, grid: Grid) -> Array:
+    """Relative size of a change, for each sun angle that is judged and each wavelength."""
+    judged = np.repeat(grid.sun_angle < grid.last_judged, len(state) // grid.sun_angle.size)
+    size = np.linalg.norm(state[judged], axis=1)
+    relative: Array = np.linalg.norm(change[judged], axis=1) / np.maximum(size, 1e-30)
+    return relative
+
+
+def _no_convergence(passes: int, tolerance: float, change: float) -> InputError:
+    return InputError(
+        f"multiple scattering: must converge within {passes} passes to {tolerance:g}, "
+        f"got {change:.2g}; use probe --method reference, or --method hillaire"
+    )
+
+
+def _first_order(cut: Truncation, columns: Array, grid: Grid, workers: Workers) -> DiffuseField:
+    """Moments of the light scattered or reflected exactly once."""
+    base = cut._replace(peaked=cut.peaked[:0], phase=cut.medium.phase)
+    constituents = base.phase.shape[0]
+    dark = empty_field(cut, grid.altitude[:1], grid.sun_angle, 0)
+    shells = altitude_shells(cut.medium, FIRST_SHELLS)
+    field = empty_field(cut, grid.altitude, grid.sun_angle, ORDER)
+    degree = np.arange(ORDER + 1)
+    series = cut.moments * ((2 * degree + 1) / (4.0 * math.pi))[:, None]
+    for i in range(grid.altitude.size):
+        rays = _rays_at(cut, grid, i)
+        light = trace_rays(base, shells, columns, dark, *rays.T, max_arc=FIRST_ARC, workers=workers)
+        polynomials = legendre_polynomials(rays[:, 3], ORDER)
+        radiance = light.diffuse
+        for c in range(constituents):
+            radiance += light.single[:, c] * (polynomials.T @ series[c])
+        project(grid, i, radiance.reshape(*_shape(grid), -1), field)
+    return field
+
+
+def _rays_at(cut: Truncation, grid: Grid, node: int) -> Array:
+    """Rays in all directions of an altitude's node for all suns, shape (ray, 4)."""
+    mu, sun, azimuth = np.meshgrid(grid.mu[node], grid.sun_angle, grid.azimuth, indexing="ij")
+    mu_s = np.cos(sun)
+    nu = mu * mu_s + np.sqrt(1.0 - mu**2) * np.sin(sun) * np.cos(azimuth)
+    # A ray that starts on the ground itself must still see the sky.
+    r = np.full(mu.shape, cut.medium.r_bottom + max(grid.altitude[node], 1e-8))
+    return np.stack([r, mu, mu_s, nu], axis=-1).reshape(-1, 4)
+
+
+def _shape(grid: Grid) -> tuple[int, int, int]:
+    """Numbers of directions, suns and azimuths that the rays of an altitude stand for."""
+    return grid.mu.shape[1], grid.sun_angle.size, grid.azimuth.size
+
+
+class Batch(NamedTuple):
+    """Directions `begin` to `end` of a grid's altitude `node`, as `Fans`, and their `Samples`."""
+
+    node: int
+    fans: Flat
+    begin: int
+    end: int
+    samples: Flat
+
+
+def _trace_grid(cut: Truncation, grid: Grid) -> list[Batch]:
+    """Trace the grid's directions; their samples serve every pass and every sun."""
+    shells = altitude_shells(cut.medium, SHELLS)
+    batches = []
+    for node in range(grid.altitude.size):
+        fans = group_rays(_rays_at(cut, grid, node))
+        begin, end = 0, len(fans.starts)
+        while begin < end:
+            samples = allocate_samples(cut.medium)
+            stop = trace(cut.medium, shells, ARC, fans.starts, begin, end, samples)
+            batches.append(Batch(node, flatten(fans), begin, stop, flatten(samples)))
+            begin = stop
+    return batches
+
+
+def _fan_out(cut: Truncation, grid: Grid, traced: list[Batch]) -> list[Batch]:
+    """Give traced directions the suns and azimuths of a grid."""
+    nodes = range(grid.altitude.size)
+    fans = [flatten(group_rays(_rays_at(cut, grid, node))) for node in nodes]
+    return [batch._replace(fans=fans[batch.node]) for batch in traced]
+
+
+def _scatter(
+    cut: Truncation, field: DiffuseField, grid: Grid, batches: list[Batch], workers: Workers
+) -> DiffuseField:
+    """Scatter a field once more and transport it; the ground reflects its irradiance."""
+    nodes, rays, wavelengths = grid.altitude.size, math.prod(_shape(grid)), field.ground.shape[1]
+    out = np.zeros((nodes, rays, wavelengths), np.float32)
+    light = [flatten(each) for each in (field, side_by_side(field), cut.medium)]
+
+    def work(first: int, last: int) -> None:
+        for batch in batches[first:last]:
+            scratch = allocate_scratch(field, batch.fans.value)
+            add_diffuse(*light, *batch[1:], scratch, out[batch.node])
+
+    workers.run_rows(len(batches), work)
+    scattered = field._replace(
+        radiance=np.empty_like(field.radiance), ground=np.empty_like(field.ground)
+    )
+    shape = *_shape(grid), wavelengths
+
+    def store(first: int, last: int) -> None:
+        for i in range(first, last):
+            project(grid, i, out[i].reshape(shape), scattered)
+
+    workers.run_rows(nodes, store)
+    return scattered
+
+
+def _state(field: DiffuseField) -> Array:
+    """Field as one vector for each sun angle and wavelength, for the iteration."""
+    columns = field.radiance.transpose(1, 3, 0, 2).reshape(field.ground.size, -1)
+    return np.concatenate([columns, field.ground.reshape(-1, 1)], axis=1, dtype=np.float32)
+
+
+def _field(like: DiffuseField, state: Array) -> DiffuseField:
+    """Inverse of `_state`."""
+    altitudes, suns, moments, wavelengths = like.radiance.shape
+    columns = state[:, :-1].reshape(suns, wavelengths, altitudes, moments)
+    return like._replace(
+        radiance=np.ascontiguousarray(columns.transpose(2, 0, 3, 1), dtype=np.float32),
+        ground=state[:, -1].reshape(suns, wavelengths).astype(float),
+    )

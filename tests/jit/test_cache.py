@@ -1,0 +1,260 @@
+"""What is kept between runs is found again, and made anew where it is damaged."""
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+
+import skybake
+from skybake.jit import cache
+from skybake.jit.sealed import read_sealed
+
+SCRIPT = """
+import sys
+from skybake.jit.cache import cache_directory, is_warm
+import numpy as np
+from skybake.scattering.harmonics import build_harmonics, fill_harmonics
+before = is_warm()
+fill_harmonics(build_harmonics(2), 0.5, np.empty(6))
+print(cache_directory(), before, is_warm(), int("numba" not in sys.modules))
+"""
+
+
+LARGER = """
+import numpy as np
+from skybake import load_preset
+from skybake.scattering.transmittance import build_columns
+from skybake.optics.medium import build_medium
+build_columns(build_medium(load_preset("earth"), np.array([550.0])), shape=(2, 2), steps=1)
+"""
+
+
+def run(cache=None, *, script=SCRIPT, wrapper=(), **environment):
+    if cache is not None:
+        environment["SKYBAKE_CACHE_DIR"] = str(cache)
+    return subprocess.run(
+        [*wrapper, sys.executable, "-W", "always", "-c", script],
+        env={"PYTHONPATH": ":".join(sys.path), **environment},
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=120,
+    )
+
+
+def test_second_process_finds_what_the_first_compiled(tmp_path):
+    first, second = (run(tmp_path).stdout.split() for _ in range(2))
+    assert first[1:3] == ["False", "True"]
+    assert second[1:] == ["True", "True", "1"]
+    assert first[0] == second[0]
+    assert first[0].startswith(str(tmp_path))
+
+
+def check_that_nothing_is_kept(result, warning):
+    assert result.stdout.split() == ["None", "False", "False", "0"]
+    assert result.stderr.count("RuntimeWarning") == 1
+    assert warning in result.stderr
+
+
+@pytest.mark.parametrize("variable", ["SKYBAKE_CACHE_DIR", "NUMBA_CACHE_DIR", "XDG_CACHE_HOME"])
+def test_without_a_writable_folder_kernels_run_with_one_warning(tmp_path, variable):
+    blocked = tmp_path / "file"
+    blocked.write_text("not a folder")
+    result = run(**{variable: str(blocked / "cache")})
+    check_that_nothing_is_kept(result, f"{blocked}")
+    assert "kernel cache must be writable" in result.stderr
+
+
+UNPRIVILEGED = ("setpriv", "--bounding-set=-dac_override,-dac_read_search")
+
+
+def test_in_a_write_protected_folder_kernels_run_with_one_warning(tmp_path):
+    """Root may write everywhere, unless a capability is taken from it."""
+    tmp_path.chmod(0o555)
+    result = run(tmp_path, wrapper=() if os.getuid() else UNPRIVILEGED)
+    check_that_nothing_is_kept(result, "kernel cache must be writable")
+
+
+def test_a_folder_that_root_filled_is_read_by_all(tmp_path):
+    """As a container's users do what `skybake cache warm` left in its image."""
+    folder = Path(run(tmp_path).stdout.split()[0])
+    folder.chmod(0o555)
+    bound = () if os.getuid() else UNPRIVILEGED
+    result = run(tmp_path, wrapper=bound)
+    assert result.stdout.split() == [str(folder), "True", "True", "1"]
+    assert result.stderr == ""
+    missing = run(tmp_path, wrapper=bound, script=LARGER)
+    assert missing.stderr.count("RuntimeWarning") == 1
+    assert f"{folder}: kernel cache must be writable" in missing.stderr
+
+
+HOMELESS = """
+import pwd
+def unknown(user):
+    raise KeyError(user)
+pwd.getpwuid = unknown
+"""
+
+
+def test_without_a_home_kernels_run_with_one_warning():
+    """As a user whom the system does not know, which containers have."""
+    result = run(script=HOMELESS + SCRIPT)
+    check_that_nothing_is_kept(result, "kernel cache must be given without a home folder")
+
+
+def test_a_home_holds_the_cache_unless_the_desktop_says_where(tmp_path):
+    home = run(HOME=str(tmp_path / "home")).stdout.split()[0]
+    desktop = run(HOME="/nowhere", XDG_CACHE_HOME=str(tmp_path / "xdg")).stdout.split()[0]
+    assert Path(home).parent == tmp_path / "home" / ".cache" / "skybake"
+    assert Path(desktop).parent == tmp_path / "xdg" / "skybake"
+
+
+@pytest.mark.parametrize(
+    ("platform", "variables", "expected"),
+    [
+        ("darwin", {}, "/home/Library/Caches/skybake"),
+        ("darwin", {"XDG_CACHE_HOME": "/xdg"}, "/xdg/skybake"),
+        ("win32", {}, "/home/AppData/Local/skybake"),
+        ("win32", {"LOCALAPPDATA": "/local"}, "/local/skybake"),
+    ],
+)
+def test_other_platforms_keep_caches_where_they_are_used_to(
+    monkeypatch, platform, variables, expected
+):
+    monkeypatch.setenv("HOME", "/home")
+    for name in ("XDG_CACHE_HOME", "LOCALAPPDATA"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in variables.items():
+        monkeypatch.setenv(name, value)
+    monkeypatch.setattr(sys, "platform", platform)
+    assert cache._user_cache() == Path(expected)
+
+
+@pytest.mark.parametrize("small_disk", ["size=64k,nr_inodes=64"], indirect=True)
+@pytest.mark.parametrize("room", [0, 4096])
+def test_on_a_full_disk_kernels_run_with_one_warning(small_disk, room):
+    """Without any room, or with room for a part of a kernel."""
+    folder = small_disk / f"kernels-{cache.source_hash(*cache.KERNEL_SOURCES)}"
+    folder.mkdir()
+    (small_disk / "ballast").write_bytes(bytes(shutil.disk_usage(small_disk).free - room))
+    result = run(small_disk, script=LARGER + SCRIPT)
+    assert result.stdout.split()[0] == str(folder)
+    assert result.stdout.split()[-1] == "0"
+    assert result.stderr.count("RuntimeWarning") == 1
+    assert "kernel cache must have room" in result.stderr
+
+
+def test_edit_to_any_kernel_source_changes_the_folder(tmp_path, monkeypatch):
+    folder = tmp_path / "skybake" / "transport"
+    folder.mkdir(parents=True)
+    (folder / "kernel.py").write_text("a = 1\n")
+    monkeypatch.setattr(cache, "__file__", str(folder / "kernel.py"))
+    first = cache.source_hash.__wrapped__("transport")
+    (folder / "kernel.py").write_text("a = 2\n")
+    assert cache.source_hash.__wrapped__("transport") != first
+
+
+def test_every_module_with_kernels_counts():
+    """Those of the path tracer are named where they are kept."""
+    package = Path(skybake.__file__).parent
+    modules = [path for path in package.rglob("*.py") if "\n@kernel\n" in path.read_text()]
+    assert len(modules) > 10
+    for path in modules:
+        module = path.relative_to(package)
+        assert {module.parts[0], module.as_posix()} & set(cache.KERNEL_SOURCES), module
+
+
+def test_another_version_of_the_compiler_changes_the_folder(monkeypatch):
+    first = cache.source_hash.__wrapped__("transport")
+    (name,) = cache._installed("numba")
+    assert name.startswith(f"numba-{version('numba')}.")
+    monkeypatch.setattr(cache, "_installed", lambda package: [f"{package}-0.0"])
+    assert cache.source_hash.__wrapped__("transport") != first
+
+
+def only_file(folder, suffix):
+    (path,) = folder.rglob(f"*{suffix}")
+    return path
+
+
+def half(whole):
+    return whole[: len(whole) // 2]
+
+
+def with_another_bit(whole):
+    middle = len(whole) // 2
+    return whole[:middle] + bytes([whole[middle] ^ 1]) + whole[middle + 1 :]
+
+
+@pytest.mark.parametrize(
+    "damage", [lambda whole: b"", lambda whole: b"foreign", half, with_another_bit]
+)
+def test_a_damaged_kernel_is_compiled_anew(tmp_path, damage):
+    run(tmp_path)
+    path = next(tmp_path.rglob("fill_harmonics-*.kernel"))
+    whole = path.read_bytes()
+    path.write_bytes(damage(whole))
+    result = run(tmp_path)
+    assert result.stdout.split()[1:] == ["True", "True", "0"]
+    assert result.stderr == ""
+    assert read_sealed(path) is not None
+    assert run(tmp_path).stdout.split()[-1] == "1"
+
+
+def test_a_folder_that_others_may_write_to_is_not_used(tmp_path):
+    """Who can write there could have us run what they like."""
+    folder = Path(run(tmp_path).stdout.split()[0])
+    folder.chmod(0o777)
+    result = run(tmp_path)
+    check_that_nothing_is_kept(result, "writable for its owner only")
+
+
+def test_a_folder_is_private_whatever_the_umask(tmp_path):
+    result = run(tmp_path, script="import os; os.umask(0)" + SCRIPT)
+    assert Path(result.stdout.split()[0]).stat().st_mode & 0o022 == 0
+
+
+def test_folders_of_other_versions_go_when_they_are_unused_for_long(tmp_path):
+    old, recent, other = (tmp_path / name for name in ("kernels-old", "kernels-new", "notes"))
+    for folder in (old, recent, other):
+        folder.mkdir()
+    long_ago = time.time() - 31 * 86400
+    os.utime(old, (long_ago, long_ago))
+    os.utime(other, (long_ago, long_ago))
+    run(tmp_path)
+    assert not old.exists()
+    assert recent.exists()
+    assert other.exists()
+
+
+def test_use_keeps_a_folder_from_going(tmp_path):
+    folder = Path(run(tmp_path).stdout.split()[0])
+    long_ago = time.time() - 31 * 86400
+    os.utime(folder, (long_ago, long_ago))
+    run(tmp_path)
+    assert time.time() - folder.stat().st_mtime < 3600
+
+
+def test_processes_that_are_all_cold_all_succeed(tmp_path):
+    environment = {"PYTHONPATH": ":".join(sys.path), "SKYBAKE_CACHE_DIR": str(tmp_path)}
+    processes = [
+        subprocess.Popen(
+            [sys.executable, "-c", SCRIPT],
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        for _ in range(4)
+    ]
+    for process in processes:
+        output, errors = process.communicate(timeout=120)
+        assert (process.returncode, errors) == (0, "")
+        assert output.split()[2] == "True"
+    assert run(tmp_path).stdout.split()[-1] == "1"
+    assert not list(tmp_path.rglob(".*"))

@@ -1,0 +1,200 @@
+"""Tables on disk."""
+
+import resource
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+from skybake.scattering import atmosphere, store
+from skybake.scattering.atmosphere import KEPT, build_atmosphere, forget_atmospheres, is_stored
+from skybake.scattering.store import arrays_from_content, content_from_arrays
+from tests.media import plain_medium
+
+MEDIUM = plain_medium(lambda h: np.exp(-h / 8.0), [0.01, 0.05])
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setattr(store, "cache_directory", lambda: tmp_path)
+    return tmp_path / "atmospheres"
+
+
+def load(medium):
+    """As a process does that has not loaded any before."""
+    forget_atmospheres()
+    return atmosphere.load_atmosphere(medium, "hillaire")
+
+
+def leaves(value):
+    """All arrays of nested tuples."""
+    if isinstance(value, tuple):
+        return [leaf for part in value for leaf in leaves(part)]
+    return [np.asarray(value)]
+
+
+def assert_same(first, second):
+    for a, b in zip(leaves(first), leaves(second), strict=True):
+        np.testing.assert_array_equal(a, b)
+        assert a.dtype == b.dtype
+
+
+def test_stored_tables_are_the_built_ones_bit_by_bit(folder):
+    assert not is_stored(MEDIUM, "hillaire")
+    built = load(MEDIUM)
+    assert is_stored(MEDIUM, "hillaire")
+    assert_same(load(MEDIUM), built)
+    assert len(list(folder.iterdir())) == 1
+
+
+def test_stored_tables_are_not_built_again(folder, monkeypatch):
+    load(MEDIUM)
+    monkeypatch.setattr(atmosphere, "build_atmosphere", None)
+    load(MEDIUM)
+
+
+def test_tables_in_memory_are_not_read_again(folder):
+    kept = load(MEDIUM)
+    (path,) = folder.iterdir()
+    path.write_bytes(b"")
+    assert atmosphere.load_atmosphere(MEDIUM, "hillaire") is kept
+
+
+def test_of_many_atmospheres_the_last_stay_in_memory(folder):
+    others = [MEDIUM._replace(ground_albedo=np.full(2, 0.1 * i)) for i in range(KEPT + 1)]
+    kept = [load(others[0])]
+    kept += [atmosphere.load_atmosphere(medium, "hillaire") for medium in others[1:]]
+    again = [atmosphere.load_atmosphere(medium, "hillaire") for medium in reversed(others)]
+    assert [a is b for a, b in zip(again, reversed(kept), strict=True)] == [True] * KEPT + [False]
+
+
+def test_threads_that_need_the_same_tables_build_them_once(folder, monkeypatch):
+    built = []
+
+    def build(*arguments):
+        built.append(arguments)
+        time.sleep(0.2)
+        return build_atmosphere(*arguments)
+
+    monkeypatch.setattr(atmosphere, "build_atmosphere", build)
+    forget_atmospheres()
+    with ThreadPoolExecutor(4) as threads:
+        found = list(
+            threads.map(lambda _: atmosphere.load_atmosphere(MEDIUM, "hillaire"), range(4))
+        )
+    assert len(built) == 1
+    assert all(one is found[0] for one in found)
+
+
+def test_a_build_that_fails_is_tried_again(folder, monkeypatch):
+    def fail(*_):
+        raise MemoryError
+
+    forget_atmospheres()
+    with monkeypatch.context() as broken:
+        broken.setattr(atmosphere, "build_atmosphere", fail)
+        with pytest.raises(MemoryError):
+            atmosphere.load_atmosphere(MEDIUM, "hillaire")
+    assert atmosphere.load_atmosphere(MEDIUM, "hillaire").shells.size > 1
+
+
+def half(whole):
+    return whole[: len(whole) // 2]
+
+
+def with_another_bit(whole):
+    """In the middle, which is within an array."""
+    middle = len(whole) // 2
+    return whole[:middle] + bytes([whole[middle] ^ 1]) + whole[middle + 1 :]
+
+
+def with_another_array(whole, name, change):
+    """The digest stays."""
+    arrays = arrays_from_content(whole)
+    return whole[:32] + content_from_arrays(arrays | {name: change(arrays[name])})[32:]
+
+
+def with_nan(whole):
+    return with_another_array(whole, "radiance", lambda array: np.full_like(array, np.nan))
+
+
+def with_another_shape(whole):
+    return with_another_array(whole, "columns", lambda array: array[:, :-1])
+
+
+DAMAGES = [
+    lambda whole: b"",
+    lambda whole: b"not tables",
+    half,
+    with_another_bit,
+    with_nan,
+    with_another_shape,
+]
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_a_file_that_is_not_what_was_written_is_made_anew(folder, damage):
+    built = load(MEDIUM)
+    (path,) = folder.iterdir()
+    whole = path.read_bytes()
+    path.write_bytes(damage(whole))
+    assert_same(load(MEDIUM), built)
+    assert path.read_bytes() == whole
+
+
+def test_a_file_in_place_of_the_folder_only_costs_the_reuse(folder):
+    folder.write_text("not a folder")
+    first, second = (load(MEDIUM) for _ in range(2))
+    assert_same(first, second)
+    assert not is_stored(MEDIUM, "hillaire")
+    assert folder.read_text() == "not a folder"
+
+
+def test_a_folder_in_place_of_a_file_only_costs_the_reuse(folder):
+    built = load(MEDIUM)
+    (path,) = folder.iterdir()
+    path.unlink()
+    path.mkdir()
+    assert_same(load(MEDIUM), built)
+    assert list(folder.iterdir()) == [path]
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        MEDIUM._replace(ground_albedo=MEDIUM.ground_albedo + 0.1),
+        MEDIUM._replace(density=MEDIUM.density * 1.01),
+        MEDIUM._replace(r_bottom=MEDIUM.r_bottom - 1.0),
+        MEDIUM._replace(scattering=MEDIUM.scattering * 0.9),
+    ],
+)
+def test_another_medium_has_tables_of_its_own(folder, other):
+    load(MEDIUM)
+    assert not is_stored(other, "hillaire")
+    assert not is_stored(MEDIUM, "full")
+
+
+def test_a_full_disk_only_costs_the_reuse(folder):
+    """Files beyond a limit cannot grow, as on a full disk."""
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (5000, limits[1]))
+    try:
+        built = load(MEDIUM)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert list(folder.iterdir()) == []
+    assert_same(load(MEDIUM), built)
+
+
+def test_the_tables_used_least_recently_go_first(folder, monkeypatch):
+    others = [MEDIUM._replace(ground_albedo=np.full(2, 0.1 * i)) for i in range(3)]
+    load(others[0])
+    (path,) = folder.iterdir()
+    monkeypatch.setattr(store, "LARGEST_STORE", int(2.5 * path.stat().st_size))
+    load(others[1])
+    time.sleep(0.05)  # file systems count in clock ticks
+    load(others[0])
+    time.sleep(0.05)
+    load(others[2])
+    assert [is_stored(medium, "hillaire") for medium in others] == [True, False, True]
