@@ -15,7 +15,7 @@ import numpy as np
 
 import skybake
 from skybake import reference
-from skybake.baking.scene import Scene, luminous_weights
+from skybake.image.scene import Scene, luminous_weights
 from skybake.preset import load_preset
 from skybake.sky.sky import Sky
 from tests.comparison import (
@@ -185,7 +185,7 @@ def traced_rows(quick: bool) -> Iterator[list[str]]:
 
 def illuminance(sun: float, method: str = "full") -> tuple[float, float]:
     """Horizontal illuminance of `earth` at the ground by the sky, and by sky and sun. [lx]"""
-    settings = skybake.MapSettings(math.radians(sun), method=method)
+    settings = skybake.map_settings(sun_elevation=math.radians(sun), method=method)
     scene = Scene(load_preset("earth"), settings)
     sky = scene.sky_illuminance()
     return sky, sky + scene.sun_illuminance()[1]

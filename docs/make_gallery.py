@@ -61,7 +61,7 @@ def _left(column: int) -> int:
 
 def _bake(name: str, elevation: float, folder: Path) -> Path:
     picture = folder / f"{name}{elevation:+g}.png"
-    settings = skybake.MapSettings(math.radians(elevation), width=TILE[0])
+    settings = skybake.map_settings(sun_elevation=math.radians(elevation), size=TILE[0])
     skybake.bake(name, picture.with_suffix(".exr"), settings, preview=picture)
     return picture
 

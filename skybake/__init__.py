@@ -12,20 +12,46 @@ from typing import TYPE_CHECKING, Any
 from skybake.version import __version__
 
 if TYPE_CHECKING:
-    from skybake.baking import Baked, MapSettings, bake
+    from skybake.baking import Baked, bake
     from skybake.errors import SkybakeError
+    from skybake.image.settings import Encoding, Lighting, MapSettings, View, map_settings
     from skybake.preset import load_preset
+    from skybake.projection import Cubemap, Equirect, Fisheye, Perspective
     from skybake.sky.sky import Sky
 
-__all__ = ["Baked", "MapSettings", "Sky", "SkybakeError", "__version__", "bake", "load_preset"]
+__all__ = [
+    "Baked",
+    "Cubemap",
+    "Encoding",
+    "Equirect",
+    "Fisheye",
+    "Lighting",
+    "MapSettings",
+    "Perspective",
+    "Sky",
+    "SkybakeError",
+    "View",
+    "__version__",
+    "bake",
+    "load_preset",
+    "map_settings",
+]
 
 _HOMES = {
     "Baked": "skybake.baking",
-    "MapSettings": "skybake.baking",
+    "Cubemap": "skybake.projection",
+    "Encoding": "skybake.image.settings",
+    "Equirect": "skybake.projection",
+    "Fisheye": "skybake.projection",
+    "Lighting": "skybake.image.settings",
+    "MapSettings": "skybake.image.settings",
+    "Perspective": "skybake.projection",
     "Sky": "skybake.sky.sky",
     "SkybakeError": "skybake.errors",
+    "View": "skybake.image.settings",
     "bake": "skybake.baking",
     "load_preset": "skybake.preset",
+    "map_settings": "skybake.image.settings",
 }
 
 

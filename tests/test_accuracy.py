@@ -10,8 +10,8 @@ import pytest
 
 import skybake
 from skybake.baking.probe import Directions, probe
-from skybake.baking.scene import Scene, luminous_weights
 from skybake.formats.reader import read_image
+from skybake.image.scene import Scene, luminous_weights
 from skybake.preset import load_preset
 from skybake.sky.sky import Sky
 from skybake.sky.view import horizon_angles
@@ -134,10 +134,10 @@ def test_probe_of_the_preset_gives_the_table(tmp_path):
 def mapped_and_probed(planet, altitude, sun, tmp_path):
     """Luminances of texels in a map, and of the same directions by the probe."""
     path, width, height = tmp_path / "map.exr", 256, 128
-    settings = skybake.MapSettings(
-        math.radians(sun),
+    settings = skybake.map_settings(
+        sun_elevation=math.radians(sun),
         altitude=altitude,
-        width=width,
+        size=width,
         colorspace="xyz",
         units="nits",
         pixel="float",
@@ -192,7 +192,7 @@ def test_texels_agree_with_probe_within_half_a_percent(planet, altitude, sun, tm
 @pytest.mark.parametrize(("sun", "traced"), [(-4, 36.0), (-6, 3.57), (-8, 0.353), (-10, 0.042)])
 def test_twilight_on_the_ground_is_as_bright_as_clear_air_by_monte_carlo(sun, traced):
     """A separate spherical Monte Carlo of air and ozone; Seidelmann's are 0 to 17 % lower. [lx]"""
-    scene = Scene(load_preset("earth"), skybake.MapSettings(math.radians(sun)))
+    scene = Scene(load_preset("earth"), skybake.map_settings(sun_elevation=math.radians(sun)))
     total = scene.sky_illuminance() + scene.sun_illuminance()[1]
     assert total == pytest.approx(traced, rel=0.25)
 

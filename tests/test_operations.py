@@ -47,15 +47,15 @@ def _plain(argument):
 
 
 def baked(folder, preset="earth", sun=5.0, **settings):
-    settings = skybake.MapSettings(sun_elevation=math.radians(sun), **settings)
+    settings = skybake.map_settings(sun_elevation=math.radians(sun), **settings)
     skybake.bake(preset, folder / "sky.exr", settings)
 
 
 @pytest.mark.parametrize(
     ("settings", "pixels"),
     [
-        ({"width": 1024}, 1024 * 512),
-        ({"width": 256, "projection": "cubemap"}, 6 * 256 * 256),
+        ({"size": 1024}, 1024 * 512),
+        ({"size": 256, "projection": "cubemap"}, 6 * 256 * 256),
     ],
 )
 def test_each_pixel_is_evaluated_once(tmp_path, work, settings, pixels):
@@ -75,9 +75,9 @@ def test_each_pixel_is_evaluated_once(tmp_path, work, settings, pixels):
     ],
 )
 def test_a_sky_takes_few_rays(tmp_path, work, preset, sun, altitude, fans, samples):
-    baked(tmp_path, preset, sun, width=64, altitude=altitude)
+    baked(tmp_path, preset, sun, size=64, altitude=altitude)
     work.clear()
-    baked(tmp_path, preset, sun, width=64, altitude=altitude)
+    baked(tmp_path, preset, sun, size=64, altitude=altitude)
     assert work["fans"] <= 1.1 * fans
     assert work["samples"] <= 1.1 * samples
     assert sum(work[name] for name in ("trace", "add_single_scattering", "add_diffuse")) < 150

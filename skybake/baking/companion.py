@@ -54,7 +54,7 @@ def compile_kernels() -> None:
     view = SkyView(0.0, 1.5, 1.0, rows, curves)
     pixels = np.zeros((0, 1, 3), np.float32)
     place = np.zeros((1, 1))
-    fill_directions(view, place, place, 1.0, 0, 0, allocate_pixels(view, 1), pixels)
+    fill_directions(view, place, place, place, 0, 0, allocate_pixels(view, 1), pixels)
     half_rows(np.zeros((1, 1, 3), np.float32))
 
 

@@ -10,12 +10,10 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from skybake.baking.settings import MapSettings
-from skybake.errors import InputError
+from skybake.image.settings import Encoding, Lighting, MapSettings
 from skybake.preset import Planet
-from skybake.projection.cubemap import FACES
 
-PLAIN = MapSettings()
+PLAIN_LIGHTING, PLAIN_ENCODING = Lighting(), Encoding()
 
 LONGEST_VALUE = 12
 LONGEST_CHANGES = 40
@@ -33,20 +31,18 @@ def default_path(planet: Planet, settings: MapSettings) -> Path:
     digits of its digest; settings other than the default ones follow the sun, such that
     maps of other light have other names. Size, pixel type and compression do not show.
     """
-    projection = settings.projection
-    if projection == "cubemap" and settings.cube_layout != PLAIN.cube_layout:
-        projection = f"{projection}_{settings.cube_layout}"
+    view, lighting, encoding = settings.view, settings.lighting, settings.encoding
     parts = (
         world_name(planet),
-        f"sun{math.degrees(settings.sun_elevation):+06.2f}deg",
-        _bearing(settings.sun_azimuth),
-        f"{settings.altitude * 1e3:g}m" if settings.altitude > 0.0 else "",
-        settings.method if settings.method != PLAIN.method else "",
-        _DISCS[settings.sun_disc],
-        settings.colorspace if settings.colorspace != PLAIN.colorspace else "",
-        _scale(settings),
-        "clamped" if settings.clamp_negative else "",
-        projection,
+        f"sun{math.degrees(lighting.sun_elevation):+06.2f}deg",
+        _bearing(lighting.sun_azimuth),
+        f"{view.altitude * 1e3:g}m" if view.altitude > 0.0 else "",
+        lighting.method if lighting.method != PLAIN_LIGHTING.method else "",
+        _DISCS[lighting.sun_disc],
+        encoding.colorspace if encoding.colorspace != PLAIN_ENCODING.colorspace else "",
+        _scale(encoding),
+        "clamped" if encoding.clamp_negative else "",
+        view.projection.label,
     )
     return Path(f"{'_'.join(filter(None, parts))}.exr")
 
@@ -72,30 +68,29 @@ def _changes_name(changes: Mapping[str, Any]) -> str:
 
 def _bearing(azimuth: float) -> str:
     degrees = round(math.degrees(azimuth), 2) % 360.0
-    return "" if degrees == math.degrees(PLAIN.sun_azimuth) else f"az{degrees:06.2f}deg"
+    return "" if degrees == math.degrees(PLAIN_LIGHTING.sun_azimuth) else f"az{degrees:06.2f}deg"
 
 
-def _scale(settings: MapSettings) -> str:
-    if settings.white_luminance == PLAIN.white_luminance:
+def _scale(encoding: Encoding) -> str:
+    if encoding.white_luminance == PLAIN_ENCODING.white_luminance:
         return ""
-    return settings.units if settings.ev is None else f"ev{settings.ev:g}"
+    return encoding.units if encoding.ev is None else f"ev{encoding.ev:g}"
 
 
 def map_paths(target: Path, settings: MapSettings) -> tuple[Path, ...]:
-    """Return the files of a map: one, or one for each of the `FACES`.
+    """Return the files of a map: one, or one for each face.
 
     Raises
     ------
     InputError
-        If the file format cannot hold the cube's layout.
+        If the file format cannot hold the projection's layout.
     """
-    if settings.projection == "equirect" or settings.cube_layout == "cross":
-        return (target,)
-    if settings.cube_layout == "exr":
-        if target.suffix.lower() != ".exr":
-            raise InputError(f"{target}: suffix must be .exr for the cube layout exr")
-        return (target,)
-    return tuple(face_path(target, face) for face in FACES)
+    projection = settings.view.projection
+    projection.check_file(target)
+    return tuple(
+        target if canvas.face is None else face_path(target, canvas.face)
+        for canvas in projection.canvases()
+    )
 
 
 def face_path(target: Path, face: str) -> Path:

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from skybake import reference
-from skybake.baking.light import light_of_scene
-from skybake.baking.scene import Scene, luminous_weights
-from skybake.baking.settings import MapSettings
 from skybake.errors import InputError
+from skybake.image.light import light_of_scene
+from skybake.image.scene import Scene, luminous_weights
+from skybake.image.settings import Lighting, MapSettings, View
 from skybake.optics.medium import Array
 from skybake.preset import Planet
 from skybake.sky.sky import WAVELENGTHS, Sky
@@ -194,9 +194,8 @@ def _colour(
 
 
 def _illuminance(planet: Planet, sky: Sky, directions: Directions) -> dict[str, Array]:
-    settings = MapSettings(
-        sun_elevation=sky.sun_elevation, altitude=sky.altitude, method=sky.method
-    )
+    lighting = Lighting(sky.sun_elevation, method=sky.method)
+    settings = MapSettings(View(sky.altitude), lighting)
     light = light_of_scene(Scene(planet, settings))
     figures = {
         "direct_normal_illuminance_lux": light.direct_normal_illuminance,

@@ -6,8 +6,8 @@ import hashlib
 import json
 from typing import Any
 
-from skybake.baking.settings import MapSettings
 from skybake.formats.spec import Attribute
+from skybake.image.settings import MapSettings
 from skybake.preset import Planet
 from skybake.version import __version__
 

@@ -12,14 +12,16 @@ import numpy as np
 
 from skybake import reference
 from skybake.baking.companion import beside
-from skybake.baking.settings import CUBE_LAYOUTS, MapSettings
 from skybake.baking.write import bake
+from skybake.image.settings import Lighting, MapSettings, View
 from skybake.optics.medium import build_medium
 from skybake.preset import Planet, load_preset
+from skybake.projection import Cubemap, Equirect, Fisheye, Perspective
+from skybake.projection.cubemap import LAYOUTS
 from skybake.scattering.atmosphere import build_atmosphere
 from skybake.sky.sky import METHODS, WAVELENGTHS, Sky
 
-SMALL = MapSettings(width=16)
+SMALL = MapSettings(View(projection=Equirect(16)))
 ORBIT = 400.0
 
 
@@ -34,8 +36,8 @@ def compile_all() -> None:
     for method in ("full", "hillaire"):
         build_atmosphere(medium, method)
     here = np.zeros(1)
-    reference.radiance(medium, 0.0, SMALL.sun_elevation, here, here, samples=2)
-    Sky(planet, SMALL.sun_elevation).radiance(np.array([0.0, 1.0, 0.0]))
+    reference.radiance(medium, 0.0, SMALL.lighting.sun_elevation, here, here, samples=2)
+    Sky(planet, SMALL.lighting.sun_elevation).radiance(np.array([0.0, 1.0, 0.0]))
 
 
 def solve(names: Iterable[str | Path], notice: Callable[[str], None]) -> None:
@@ -55,19 +57,19 @@ def solve(names: Iterable[str | Path], notice: Callable[[str], None]) -> None:
     """
     planets: list[Planet] = [load_preset(name) for name in names]
     for planet in planets:
-        sky = Sky(planet, SMALL.sun_elevation)
+        sky = Sky(planet, SMALL.lighting.sun_elevation)
         if not sky.is_solved:
             notice(f"solving for the light in the atmosphere of {planet.name}")
             _ = sky.atmosphere
 
 
 def _kinds() -> list[MapSettings]:
-    twilight = replace(SMALL, sun_elevation=math.radians(-4.0))
-    cube = replace(SMALL, projection="cubemap")
+    cubes = [Cubemap(16, layout) for layout in LAYOUTS]
+    projections = (*cubes, Fisheye(16), Perspective(16, 8))
     return [
-        *(replace(SMALL, method=method) for method in METHODS),
-        twilight,
-        replace(SMALL, altitude=ORBIT),
-        replace(cube, altitude=ORBIT),
-        *(replace(cube, cube_layout=layout) for layout in CUBE_LAYOUTS),
+        *(replace(SMALL, lighting=Lighting(method=method)) for method in METHODS),
+        replace(SMALL, lighting=Lighting(math.radians(-4.0))),
+        MapSettings(View(ORBIT, Equirect(16))),
+        MapSettings(View(ORBIT, cubes[0])),
+        *(MapSettings(View(projection=projection)) for projection in projections),
     ]

@@ -12,21 +12,20 @@ from typing import Literal
 
 import numpy as np
 
-from skybake.baking.light import Light, attributes_from_light, light_of_scene
-from skybake.baking.panel import ColumnPanel, CrossPanel, EquirectPanel, FacePanel, Panel
 from skybake.baking.paths import default_path, map_paths
 from skybake.baking.preview import SURVEY_ROWS
 from skybake.baking.recipe import preview_texts, recipe_attributes
-from skybake.baking.scene import Scene
-from skybake.baking.settings import MapSettings
 from skybake.baking.show import scene_ev, show_scene
 from skybake.formats.preview import check_preview, open_preview
 from skybake.formats.scanlines import Rows
 from skybake.formats.spec import Attribute, MapSpec
 from skybake.formats.writer import MapWriter, check_map_path, open_maps
+from skybake.image.light import Light, attributes_from_light, light_of_scene
+from skybake.image.raster import Raster
+from skybake.image.scene import Scene
+from skybake.image.settings import MapSettings
 from skybake.jit.workers import Workers
 from skybake.preset import Planet, load_preset
-from skybake.projection.cubemap import FACES
 from skybake.projection.equirect import column_bearings, row_zeniths
 
 BAND_ROWS = 128
@@ -167,20 +166,22 @@ def bake_scene(
         **recipe_attributes(planet, settings),
         **(attributes or {}),
     }
-    panels = dict(zip(paths, _panels(scene), strict=True))
-    pixel = _pixel(scene, settings, max(panel.peak for panel in panels.values()))
+    encoding = settings.encoding
+    canvases = settings.view.projection.canvases()
+    rasters = {path: Raster(scene, one) for path, one in zip(paths, canvases, strict=True)}
+    pixel = _pixel(scene, max(raster.peak for raster in rasters.values()))
     specs = {
         path: MapSpec(
-            panel.width,
-            panel.height,
-            settings.space,
-            settings.white_luminance,
+            raster.canvas.width,
+            raster.canvas.height,
+            encoding.space,
+            encoding.white_luminance,
             pixel=pixel,
-            compression=settings.compression,
-            envmap=panel.envmap,
+            compression=encoding.compression,
+            envmap=raster.canvas.envmap,
             attributes=attributes,
         )
-        for path, panel in panels.items()
+        for path, raster in rasters.items()
     }
     with ExitStack() as stack:
         # Everything is written before anything takes its name: all files appear, or none.
@@ -191,13 +192,13 @@ def bake_scene(
             show = stack.enter_context(open_preview(preview, view=preview_view, texts=texts))
             draw = partial(show_scene, scene, show, preview_ev)
         writers = stack.enter_context(open_maps(specs))
-        _write(panels, writers, scene.workers, progress)
+        _write(rasters, writers, scene.workers, progress)
         if draw is not None:
             draw()
     return Baked(
         **vars(light),
         files=paths,
-        white_luminance=settings.white_luminance,
+        white_luminance=encoding.white_luminance,
         pixel=pixel if paths[0].suffix.lower() == ".exr" else "rgbe",
         preview=preview,
         preview_ev=preview_ev,
@@ -205,28 +206,18 @@ def bake_scene(
     )
 
 
-def _panels(scene: Scene) -> list[Panel]:
-    settings = scene.settings
-    if settings.projection == "equirect":
-        return [EquirectPanel(scene, settings.width)]
-    if settings.cube_layout == "cross":
-        return [CrossPanel(scene, settings.width)]
-    if settings.cube_layout == "exr":
-        return [ColumnPanel(scene, settings.width)]
-    return [FacePanel(scene, face, settings.width) for face in FACES]
-
-
-def _pixel(scene: Scene, settings: MapSettings, peak: float) -> Literal["half", "float"]:
+def _pixel(scene: Scene, peak: float) -> Literal["half", "float"]:
     """Type in which no value overflows and no sky value loses bits."""
-    if settings.pixel != "auto":
-        return "half" if settings.pixel == "half" else "float"
-    if settings.sun_disc == "only":
+    encoding = scene.settings.encoding
+    if encoding.pixel != "auto":
+        return "half" if encoding.pixel == "half" else "float"
+    if "sky" not in scene.layer_names:
         return "half" if peak < HALF_LARGEST else "float"
     zenith = row_zeniths(SURVEY_ROWS)[:, None]
     azimuth = column_bearings(2 * SURVEY_ROWS)[None]
     survey = scene.evaluate(zenith, azimuth, math.pi / SURVEY_ROWS)
     toward_sun = scene.evaluate(np.array([[scene.sun_zenith]]), np.zeros((1, 1)), 1e-9)
-    luminance = survey @ (scene.luminance / settings.white_luminance)
+    luminance = survey @ (scene.luminance / encoding.white_luminance)
     lit = luminance[luminance > 0.0]
     largest = 1.1 * max(np.abs(survey).max(), np.abs(toward_sun).max()) + peak
     # The survey's texels are coarser than the map's, so the bounds keep a margin.
@@ -235,20 +226,20 @@ def _pixel(scene: Scene, settings: MapSettings, peak: float) -> Literal["half", 
 
 
 def _write(
-    panels: dict[Path, Panel],
+    rasters: dict[Path, Raster],
     writers: dict[Path, MapWriter],
     workers: Workers,
     progress: Progress | None,
 ) -> None:
     bands = [
-        (path, first, min(first + BAND_ROWS, panel.height))
-        for path, panel in panels.items()
-        for first in range(0, panel.height, BAND_ROWS)
+        (path, first, min(first + BAND_ROWS, raster.canvas.height))
+        for path, raster in rasters.items()
+        for first in range(0, raster.canvas.height, BAND_ROWS)
     ]
 
     def compute(band: tuple[Path, int, int]) -> Rows:
         path, first, last = band
-        return writers[path].ready(panels[path].rows(first, last), workers)
+        return writers[path].ready(rasters[path].rows(first, last), workers)
 
     computed = workers.ahead(compute, bands)
     for i, ((path, first, last), rows) in enumerate(zip(bands, computed, strict=True)):

@@ -83,7 +83,7 @@ def auto_ev(
     solid_angle : array_like of float, optional
         What each value counts, in any unit; broadcast to `luminance`.
     above : array_like of bool, optional
-        Which values lie above the horizontal; broadcast to `luminance`.
+        Which values lie above the horizontal; broadcast to `luminance`. If none does, all count.
 
     Returns
     -------
@@ -107,6 +107,8 @@ def auto_ev(
     sample = np.asarray(luminance, np.float64)
     weights = np.broadcast_to(np.asarray(solid_angle, np.float64), sample.shape).ravel()
     upper = np.broadcast_to(np.asarray(above, np.bool_), sample.shape).ravel()
+    if not upper.any():
+        upper = np.ones_like(upper)
     sample = sample.ravel()
 
     mostly = _weighted_quantile(sample, weights, _MOSTLY)

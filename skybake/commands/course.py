@@ -18,7 +18,7 @@ from skybake.errors import InputError
 from skybake.sequence.ramp import Ramp, shares
 
 if TYPE_CHECKING:
-    from skybake.baking import MapSettings
+    from skybake.image.settings import MapSettings
     from skybake.preset import Planet
     from skybake.sequence.frames import FramePattern
     from skybake.sequence.plan import Plan
@@ -59,7 +59,8 @@ def plan_from_options(context: click.Context) -> Plan:
         preview = previews.path(number) if previews else options["preview"]
         settings = _settings(options, share, when)
         if curve is not None:
-            settings = replace(settings, ev=_interpolated(curve, number))
+            encoding = replace(settings.encoding, ev=_interpolated(curve, number))
+            settings = replace(settings, encoding=encoding)
         frames.append(
             Frame(
                 number=number,

@@ -119,9 +119,9 @@ def _header(plan: Plan, fps: float, command: list[str]) -> SequenceHeader:
     worlds = [planet.recipe for planet in plan.planets]
     return SequenceHeader(
         preset=planet.name,
-        projection=settings.projection,
-        colorspace=settings.colorspace,
-        sun_disc=settings.sun_disc,
+        projection=settings.view.projection.name,
+        colorspace=settings.encoding.colorspace,
+        sun_disc=settings.lighting.sun_disc,
         sun_angular_diameter_deg=math.degrees(2.0 * planet.star.angular_radius),
         recipe={"map": _common(maps), "preset": _common(worlds), "command": command},
         fps=fps,
@@ -149,15 +149,15 @@ def _record(frame: Frame, outcome: Outcome, folder: Path) -> FrameRecord:
         frame=frame.number,
         time=None if time is None else str(time),
         label=frame.label,
-        sun_elevation_deg=math.degrees(settings.sun_elevation),
-        sun_azimuth_deg=math.degrees(settings.sun_azimuth),
-        altitude_m=settings.altitude * 1e3,
+        sun_elevation_deg=math.degrees(settings.lighting.sun_elevation),
+        sun_azimuth_deg=math.degrees(settings.lighting.sun_azimuth),
+        altitude_m=settings.view.altitude * 1e3,
         sun_direction=light.sun_direction,
         sun_colour=light.sun_colour,
         sun_illuminance_lux=light.direct_normal_illuminance,
         direct_illuminance_lux=light.direct_illuminance,
         sky_illuminance_lux=light.sky_illuminance,
-        white_luminance_cd_m2=settings.white_luminance,
+        white_luminance_cd_m2=settings.encoding.white_luminance,
         exposure_ev=outcome.ev,
         files=tuple(_seen_from(folder, path) for path in outcome.files),
         sha256=outcome.sha256,
@@ -170,7 +170,7 @@ def _seen_from(folder: Path, path: Path) -> str:
 
 
 def _label(frame: Frame) -> str:
-    sun = f"sun {math.degrees(frame.settings.sun_elevation):.1f} deg"
+    sun = f"sun {math.degrees(frame.settings.lighting.sun_elevation):.1f} deg"
     time = (frame.label or str(frame.number)).removesuffix(":00")
     if frame.label and "skybake:time" in frame.attributes:
         time = f"{datetime.fromisoformat(frame.label):%Y-%m-%d %H:%M}"

@@ -21,7 +21,7 @@ from skybake.sequence.frames import parse_frames
 from skybake.sequence.ramp import Ramp
 from skybake.units import parse_angle, parse_duration, parse_length
 
-PROJECTIONS = ("equirect", "cubemap")
+PROJECTIONS = ("equirect", "cubemap", "fisheye", "perspective")
 CUBE_LAYOUTS = ("faces", "cross", "exr")
 COLOUR_SPACES = ("lin_rec709", "acescg", "lin_rec2020", "lin_p3d65", "aces2065-1", "xyz")
 UNITS = ("ev15", "nits")
@@ -105,10 +105,24 @@ def altitude(text: str) -> float:
 def size(text: str) -> tuple[int, ...]:
     """Read width and height, or an edge: ``4096x2048``, ``1024``."""
     if not re.fullmatch(r"\d{1,9}(x\d{1,9})?", text, re.ASCII):
-        raise click.BadParameter(
-            f"must be as 4096x2048 for equirect or as 1024 for a cubemap, got {text!r}"
-        )
+        raise click.BadParameter(f"must be as 4096x2048, or as 1024 for a cubemap, got {text!r}")
     return tuple(int(number) for number in text.split("x"))
+
+
+def field_of_view(text: str) -> float:
+    """Read an angle greater than 0. [rad]"""
+    angle = _parse(text, parse_angle)
+    if not angle > 0.0:
+        raise click.BadParameter(f"must be greater than 0deg, got {text}")
+    return angle
+
+
+def look(text: str) -> tuple[float, float]:
+    """Read a compass bearing and an elevation with a comma between. [rad]"""
+    azimuth, comma, height = text.partition(",")
+    if not comma:
+        raise click.BadParameter(f"must be AZIMUTH,ELEVATION such as 180,10, got {text!r}")
+    return bearing(azimuth), elevation(height)
 
 
 def exposure(text: str) -> float | None:

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
-    from skybake.baking import Baked, MapSettings
+    from skybake.baking import Baked
     from skybake.commands.moment import Moment
+    from skybake.image.settings import MapSettings
 
 _STEPS = 1000
 
@@ -83,8 +84,8 @@ def result(
         "direct_normal_illuminance_lux": baked.direct_normal_illuminance,
         "sky_illuminance_lux": baked.sky_illuminance,
         "white_luminance_cd_m2": baked.white_luminance,
-        "projection": settings.projection,
-        "colorspace": settings.colorspace,
+        "projection": settings.view.projection.name,
+        "colorspace": settings.encoding.colorspace,
         "pixel": baked.pixel,
         "clamped": baked.clamped,
         "preview": None if baked.preview is None else str(baked.preview),

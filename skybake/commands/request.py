@@ -10,16 +10,13 @@ import click
 from skybake.errors import InputError
 
 if TYPE_CHECKING:
-    from skybake.baking import MapSettings
+    from skybake.image.settings import MapSettings
 
 BESIDE = Path("beside-the-map.png")
 """Stands for the default name of a preview."""
 
 PICTURES = ("preview", "contact_sheet", "animate")
 """Options that ask for pictures to look at."""
-
-EQUIRECT_WIDTH = 2048
-CUBEMAP_EDGE = 1024
 
 
 def check_together(context: click.Context) -> None:
@@ -37,6 +34,13 @@ def check_together(context: click.Context) -> None:
     pictures = " or ".join(f"--{name.replace('_', '-')}" for name in shown)
     needs = {
         "cube_layout": (options["projection"] == "cubemap", "--projection cubemap"),
+        **dict.fromkeys(
+            ("fov", "look"),
+            (
+                options["projection"] in {"fisheye", "perspective"},
+                "--projection perspective or fisheye",
+            ),
+        ),
         "pixel": (not is_radiance, "an .exr output"),
         "compression": (not is_radiance, "an .exr output"),
         "preview_ev": (has_pictures, pictures),
@@ -61,16 +65,18 @@ def map_settings(options: dict[str, Any]) -> MapSettings:
     click.UsageError
         If a value is out of range.
     """
-    width = _width(options["projection"], options["size"])
+    from skybake.image import settings
 
-    from skybake.baking import MapSettings
-
-    names = ("cube_layout", "units", "ev", "pixel", "compression")
+    names = ("units", "ev", "pixel", "compression")
     given = {name: options[name] for name in names if options[name] is not None}
-    names = ("sun_elevation", "sun_azimuth", "altitude", "projection", "colorspace")
+    names = ("sun_elevation", "sun_azimuth", "altitude", "colorspace")
     given |= {name: options[name] for name in (*names, "sun_disc", "clamp_negative", "method")}
+    attributes = {"cube_layout": "layout", "fov": "fov"}
+    shape = {own: options[name] for name, own in attributes.items() if options[name] is not None}
+    if options["look"] is not None:
+        shape["azimuth"], shape["elevation"] = options["look"]
     try:
-        return MapSettings(width=width, **given)
+        return settings.map_settings(options["projection"], options["size"], **shape, **given)
     except InputError as error:
         raise click.UsageError(f"--{error}") from error
 
@@ -80,19 +86,3 @@ def preview_path(preview: Path | None, output: Path) -> Path | None:
     if preview != BESIDE:
         return preview
     return output.with_name(output.name.replace("{face}", "preview")).with_suffix(".png")
-
-
-def _width(projection: str, size: tuple[int, ...] | None) -> int:
-    if size is None:
-        return EQUIRECT_WIDTH if projection == "equirect" else CUBEMAP_EDGE
-    text = "x".join(map(str, size))
-    if 0 in size:
-        raise click.UsageError(f"--size: must be at least 1, got {text}")
-    if projection == "cubemap":
-        if len(size) != 1:
-            raise click.UsageError(f"--size: a cubemap needs the edge of a face, got {text}")
-    elif len(size) != 2:
-        raise click.UsageError(f"--size: an equirect map needs width and height, got {text}")
-    elif size[0] != 2 * size[1]:
-        raise click.UsageError(f"--size: width must be twice the height, got {text}")
-    return size[0]

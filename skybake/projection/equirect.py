@@ -8,39 +8,18 @@ left edge over east, south in the middle, and west. Texel centres lie at
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
 
 import numpy as np
 import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
-
-CELLS_PER_RADIUS = 48
-"""Cells to a disc's radius, or one to a texel where texels are smaller."""
-
+from skybake.errors import InputError
+from skybake.projection.cells import CELLS_PER_RADIUS, Array, Cells, cover, subdivide
+from skybake.projection.chart import Canvas, Chart, Projection, check_edge, size_text, whole
 
 EVERYWHERE = (-math.inf, math.inf)
-
-
-class Cells(NamedTuple):
-    """Cells, finer than texels, that cover a disc on a map.
-
-    Attributes
-    ----------
-    zenith, distance, solid_angle : ndarray of float64, shape (cell,)
-        Zenith angles, angles from the disc's centre [rad], and sizes [sr] of what
-        the disc covers of them.
-    texel : ndarray of int, shape (cell, 4)
-        Rows of `weight` in a flat image that each cell adds to.
-    weight : ndarray of float64, shape (cell, 4)
-        Shares of the cell's flux, over the texels' solid angles. [sr⁻¹]
-    """
-
-    zenith: Array
-    distance: Array
-    solid_angle: Array
-    texel: npt.NDArray[np.int64]
-    weight: Array
 
 
 def row_zeniths(height: int) -> Array:
@@ -73,119 +52,128 @@ def solid_angles(width: int, height: int) -> Array:
     return 2.0 * math.pi / width * (edge[:-1] - edge[1:])
 
 
-def disc_cells(width: int, height: int, zenith: float, bearing: float, radius: float) -> Cells:
-    """Cut a disc into cells that share out their flux among texels.
+class EquirectChart(Chart):
+    """Pixels of an equirect map.
 
     Parameters
     ----------
-    width, height : int
-        Size of the map.
-    zenith, bearing, radius : float
-        Centre of the disc and its angular radius. [rad]
-
-    Returns
-    -------
-    Cells
-        Empty cells outside the disc are left out.
-
-    Notes
-    -----
-    A cell's flux goes to the two nearest rows and columns. Rows share it in
-    proportion to the sine of the latitude, so that a map keeps both the flux and
-    its vertical component (the illuminance of the ground) at any size, and a sun
-    that moves through a sequence does not flicker from texel to texel.
+    width : int
+        Twice the height. [pixel]
     """
-    row_step, column_step = math.pi / height, 2.0 * math.pi / width
-    # Cells that the edge cuts may have their centres outside it.
-    reach = radius * (1.0 + 2.0 / CELLS_PER_RADIUS)
-    rows, sub_row = subdivide(zenith - reach, zenith + reach, row_step, radius, (0, height))
-    if math.sin(zenith) <= math.sin(reach):
-        low, high, borders = 0.0, 2.0 * math.pi, (0.0, float(width))
-    else:
-        half_width = math.asin(math.sin(reach) / math.sin(zenith))
-        low, high, borders = bearing - half_width, bearing + half_width, EVERYWHERE
-    columns, sub_column = subdivide(
-        low, high, column_step, radius / max(math.sin(zenith), math.sin(radius)), borders
-    )
-    size = 2.0 * np.sin(rows * row_step) * math.sin(0.5 * sub_row) * sub_column
-    row, column = (grid.ravel() for grid in np.meshgrid(rows, columns, indexing="ij"))
-    theta, phi = row * row_step, column * column_step - bearing
-    chord = np.sin(theta) * math.sin(zenith) * np.sin(0.5 * phi) ** 2
-    half_sine_squared = np.sin(0.5 * (theta - zenith)) ** 2 + chord
-    distance = 2.0 * np.arcsin(np.minimum(np.sqrt(half_sine_squared), 1.0))
-    # Cells are far from square near the poles. Across the edge they measure their
-    # height and width times the slopes of the distance along each.
-    across = math.sin(zenith) * np.sin(phi)
-    along = np.sin(theta - zenith) + 2.0 * np.cos(theta) * math.sin(zenith) * np.sin(0.5 * phi) ** 2
-    extent = np.abs(along) * sub_row + np.abs(across) * np.sin(theta) * sub_column
-    extent /= np.maximum(np.sin(distance), 1e-12)
-    distance, covered = cover(distance, radius, extent, np.repeat(size, columns.size))
-    inside = covered > 0.0
-    row, column = row[inside], column[inside]
-    texel, weight = _bilinear(width, height, row, column)
-    return Cells(
-        zenith=theta[inside],
-        distance=distance[inside],
-        solid_angle=covered[inside],
-        texel=texel,
-        weight=weight,
-    )
+
+    def __init__(self, width: int) -> None:
+        self.width, self.height = width, width // 2
+
+    def angles(self, first: int, last: int) -> tuple[Array, Array]:
+        """Directions of the texels: rows share zenith angles, columns bearings."""
+        return row_zeniths(self.height)[first:last, None], column_bearings(self.width)[None]
+
+    def footprints(self, _first: int, _last: int) -> Array:
+        """Extent of a texel in zenith angle."""
+        return np.full((1, 1), math.pi / self.height)
+
+    def solid_angles(self, first: int, last: int) -> Array:
+        """Solid angle of a texel in each row, shape (row, 1). [sr]"""
+        return solid_angles(self.width, self.height)[first:last, None]
+
+    def disc_cells(self, zenith: float, bearing: float, radius: float) -> Cells:
+        """Cut a disc into cells, each of which adds to the four nearest texels.
+
+        Notes
+        -----
+        A cell's flux goes to the two nearest rows and columns. Rows share it in
+        proportion to the sine of the latitude, so that a map keeps both the flux and
+        its vertical component (the illuminance of the ground) at any size, and a sun
+        that moves through a sequence does not flicker from texel to texel.
+        """
+        width, height = self.width, self.height
+        row_step, column_step = math.pi / height, 2.0 * math.pi / width
+        # Cells that the edge cuts may have their centres outside it.
+        reach = radius * (1.0 + 2.0 / CELLS_PER_RADIUS)
+        rows, sub_row = subdivide(zenith - reach, zenith + reach, row_step, radius, (0, height))
+        if math.sin(zenith) <= math.sin(reach):
+            low, high, borders = 0.0, 2.0 * math.pi, (0.0, float(width))
+        else:
+            half_width = math.asin(math.sin(reach) / math.sin(zenith))
+            low, high, borders = bearing - half_width, bearing + half_width, EVERYWHERE
+        columns, sub_column = subdivide(
+            low, high, column_step, radius / max(math.sin(zenith), math.sin(radius)), borders
+        )
+        size = 2.0 * np.sin(rows * row_step) * math.sin(0.5 * sub_row) * sub_column
+        row, column = (grid.ravel() for grid in np.meshgrid(rows, columns, indexing="ij"))
+        theta, phi = row * row_step, column * column_step - bearing
+        chord = np.sin(theta) * math.sin(zenith) * np.sin(0.5 * phi) ** 2
+        half_sine_squared = np.sin(0.5 * (theta - zenith)) ** 2 + chord
+        distance = 2.0 * np.arcsin(np.minimum(np.sqrt(half_sine_squared), 1.0))
+        # Cells are far from square near the poles. Across the edge they measure their
+        # height and width times the slopes of the distance along each.
+        across = math.sin(zenith) * np.sin(phi)
+        along = (
+            np.sin(theta - zenith) + 2.0 * np.cos(theta) * math.sin(zenith) * np.sin(0.5 * phi) ** 2
+        )
+        extent = np.abs(along) * sub_row + np.abs(across) * np.sin(theta) * sub_column
+        extent /= np.maximum(np.sin(distance), 1e-12)
+        distance, covered = cover(distance, radius, extent, np.repeat(size, columns.size))
+        inside = covered > 0.0
+        row, column = row[inside], column[inside]
+        texel, weight = _bilinear(width, height, row, column)
+        return Cells(
+            zenith=theta[inside],
+            distance=distance[inside],
+            solid_angle=covered[inside],
+            texel=texel,
+            weight=weight,
+        )
 
 
-def cover(distance: Array, radius: float, extent: Array, solid_angle: Array) -> tuple[Array, Array]:
-    """Parts of cells that a disc covers.
+@dataclass(frozen=True)
+class Equirect(Projection):
+    """The whole sphere by bearing and zenith angle.
 
-    Parameters
+    Attributes
     ----------
-    distance, radius : ndarray of float64, float
-        Angles of the cells' centres from the disc's centre, and the disc's radius. [rad]
-    extent, solid_angle : ndarray of float64, of the shape of `distance`
-        Widths of the cells in the direction of the centre [rad], and their sizes [sr].
-
-    Returns
-    -------
-    distance, solid_angle : ndarray of float64
-        Of the covered parts. A cell that the edge cuts counts by its share: all or
-        nothing would leave up to 2 % too much or too little in sum.
+    width : int
+        Twice the height. [pixel]
     """
-    near, far = distance - 0.5 * extent, distance + 0.5 * extent
-    share = np.clip((radius - near) / np.maximum(extent, 1e-12), 0.0, 1.0)
-    # Limb darkening falls with the root of the distance from the edge, whose mean over
-    # a stretch that ends there is its value at 4/9 of the stretch.
-    middle: Array = np.where(far <= radius, distance, radius - 4.0 / 9.0 * (radius - near))
-    covered: Array = share * solid_angle
-    return middle, covered
 
+    name: ClassVar[str] = "equirect"
+    width: int = 2048
 
-def subdivide(
-    low: float,
-    high: float,
-    step: float,
-    radius: float,
-    borders: tuple[float, float],
-) -> tuple[Array, float]:
-    """Cut a span into cells that are whole parts of texels.
+    def __post_init__(self) -> None:
+        """Refuse what cannot be baked."""
+        check_edge(self.width, smallest=4)
+        if self.width % 2:
+            raise InputError(f"size: width must be twice the height, got an odd width {self.width}")
 
-    Parameters
-    ----------
-    low, high, step : float
-        Ends of the span and width of a texel.
-    radius : float
-        The disc's, in the same unit; `CELLS_PER_RADIUS` cells or more make it up.
-    borders : (float, float)
-        First and last border of texels, between which the cells stay.
+    @classmethod
+    def of_size(cls, size: tuple[int, ...] | None, options: Mapping[str, Any]) -> Self:
+        """Make one of a width, with or without the height that is half of it."""
+        if size is None:
+            return cls(**options)
+        if len(size) == 2 and size[0] != 2 * size[1]:
+            raise InputError(f"size: width must be twice the height, got {size_text(size)}")
+        return cls(width=size[0], **options)
 
-    Returns
-    -------
-    centres : ndarray of float64
-        In texels.
-    width : float
-        Of a cell, in the unit of `step`.
-    """
-    count = math.ceil(step * CELLS_PER_RADIUS / radius)
-    first = math.floor(max(low / step, borders[0]) * count)
-    last = math.ceil(min(high / step, borders[1]) * count)
-    return (np.arange(first, last) + 0.5) / count, step / count
+    def canvases(self) -> tuple[Canvas, ...]:
+        """Return the one picture."""
+        return (whole(EquirectChart(self.width), envmap="latlong"),)
+
+    @property
+    def label(self) -> str:
+        """What the names of files call it."""
+        return self.name
+
+    def recipe(self) -> dict[str, Any]:
+        """Name and width."""
+        return {"projection": self.name, "width": self.width, "cube_layout": None}
+
+    def smaller(self, width: int) -> Projection:
+        """Return a map at most so wide."""
+        return Equirect(min(self.width, width))
+
+    def glance(self, width: int) -> Projection:
+        """Return the whole sphere."""
+        return Equirect(width)
 
 
 def _bilinear(

@@ -140,8 +140,8 @@ def _tables(plan: Plan) -> Tables:
     """Tables that all frames share; where each has its own air, its worker builds them."""
     if len(plan.planets) > 1:
         return None
-    settings = plan.frames[0].settings
-    sky = Sky(plan.planets[0], settings.sun_elevation, method=settings.method)
+    lighting = plan.frames[0].settings.lighting
+    sky = Sky(plan.planets[0], lighting.sun_elevation, method=lighting.method)
     return sky.medium, sky.table_method, atmosphere_content(sky.medium, sky.table_method)
 
 

@@ -12,16 +12,16 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from skybake.baking.light import Light, attributes_from_light, light_from_attributes
 from skybake.baking.paths import map_paths
 from skybake.baking.recipe import HASH_ATTRIBUTE, preview_texts, recipe_hash
-from skybake.baking.scene import Scene
 from skybake.baking.show import scene_ev, thumbnail
 from skybake.baking.write import bake_scene
 from skybake.colour.exposure import ev_from_luminance
 from skybake.errors import InputError
 from skybake.formats.partial import remove_leftovers
 from skybake.formats.reader import read_whole_attributes
+from skybake.image.light import Light, attributes_from_light, light_from_attributes
+from skybake.image.scene import Scene
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.preset import Planet
 from skybake.sequence.plan import Frame
@@ -147,7 +147,7 @@ class _Work:
         if self._look.ev is not None:
             return self._look.ev
         if self._look.follows_map:
-            return ev_from_luminance(self._frame.settings.white_luminance)
+            return ev_from_luminance(self._frame.settings.encoding.white_luminance)
         return scene_ev(self.scene)
 
     def found_light(self) -> Light | None:

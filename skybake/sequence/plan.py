@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from skybake.baking import MapSettings
 from skybake.baking.paths import map_paths
 from skybake.baking.write import check_targets
 from skybake.errors import OutputError
 from skybake.formats.spec import Attribute
+from skybake.image.settings import MapSettings
 from skybake.preset import Planet
 
 
@@ -102,7 +102,7 @@ class Plan:
 
     def highest_sun(self) -> Frame:
         """Frame with the highest sun; of several the first."""
-        return max(self.frames, key=lambda frame: frame.settings.sun_elevation)
+        return max(self.frames, key=lambda frame: frame.settings.lighting.sun_elevation)
 
     def summary(self) -> list[dict[str, Any]]:
         """Return the frames in units for people, fit for JSON."""

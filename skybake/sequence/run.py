@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
-from skybake.baking.scene import Scene
 from skybake.baking.show import scene_ev
 from skybake.errors import SkybakeError
+from skybake.image.scene import Scene
 from skybake.sequence.frame import Outcome
 from skybake.sequence.plan import Frame, Plan
 from skybake.sequence.pool import Run
@@ -118,9 +118,9 @@ def prepare(plan: Plan, notice: Callable[[str], None] | None = None) -> None:
 
 
 def _skies(plan: Plan) -> Iterator[Sky]:
-    settings = plan.frames[0].settings
+    lighting = plan.frames[0].settings.lighting
     for planet in plan.planets:
-        yield Sky(planet, settings.sun_elevation, method=settings.method)
+        yield Sky(planet, lighting.sun_elevation, method=lighting.method)
 
 
 def common_ev(plan: Plan) -> float:

@@ -106,7 +106,7 @@ def allocate_pixels(view: SkyView, columns: int) -> PixelScratch:
 
 
 @kernel
-def fill_directions(view, zenith, azimuth, height, first, last, scratch, out):
+def fill_directions(view, zenith, azimuth, footprint, first, last, scratch, out):
     """Evaluate a sky at pixels.
 
     Parameters
@@ -117,9 +117,10 @@ def fill_directions(view, zenith, azimuth, height, first, last, scratch, out):
         Zenith angles of the pixels' centres; one column if a row shares its. [rad]
     azimuth : ndarray of float64, shape (1, column) or (row, column)
         Azimuths relative to the sun; one row if all rows share it. [rad]
-    height : float
-        Extent of a pixel in zenith angle, over which the edges of the planet and of
-        its air are smoothed by the share of the pixel on either side. [rad]
+    footprint : ndarray of float64, shape (1, 1), (row, 1) or (row, column)
+        Extents of the pixels in zenith angle, over which the edges of the planet and of
+        its air are smoothed by the share of the pixel on either side; one column if a row
+        shares its zenith angle. [rad]
     first, last : int
         Rows to fill.
     scratch : PixelScratch
@@ -137,6 +138,7 @@ def fill_directions(view, zenith, azimuth, height, first, last, scratch, out):
     shares_zenith, shares_azimuth = zenith.shape[1] == 1, azimuth.shape[0] == 1
     keeps_weights = shares_azimuth and view.zenith_first == 0.0
     is_mirrored = False
+    last_row, last_column = footprint.shape[0] - 1, footprint.shape[1] - 1
     for i in range(first, last):
         if i == first or not shares_azimuth:
             mirrors = _fill_angles(azimuth[0 if shares_azimuth else i], angle, cosine)
@@ -145,6 +147,7 @@ def fill_directions(view, zenith, azimuth, height, first, last, scratch, out):
         span = computed if shares_zenith else 1
         for begin in range(0, computed, span):
             middle = zenith[i, 0 if shares_zenith else begin]
+            height = footprint[min(i, last_row), min(begin, last_column)]
             _split_pixel(view, middle, height, theta, share)
             for side in range(2):
                 if share[side] == 0.0:

@@ -6,15 +6,16 @@ from pathlib import Path
 import numpy as np
 import OpenImageIO
 
-from skybake.baking import MapSettings, bake
+from skybake.baking import bake
 from skybake.colour.space import luminance_weights
+from skybake.image.settings import map_settings
 from skybake.projection import cubemap, equirect
 
 
 def bake_map(path, preset="earth", elevation=30.0, **options):
     """Bake with the sun's elevation in degrees; small unless told otherwise."""
-    options = {"width": 128, **options}
-    settings = MapSettings(sun_elevation=math.radians(elevation), **options)
+    options = {"size": 128, **options}
+    settings = map_settings(sun_elevation=math.radians(elevation), **options)
     return bake(preset, path, settings), settings
 
 
@@ -28,19 +29,21 @@ def pixels(path):
 
 def luminance(path, settings):
     """Luminance of a file's pixels, in cd/m2."""
-    return pixels(path).astype(float) @ luminance_weights(settings.space) * settings.white_luminance
+    weights = luminance_weights(settings.encoding.space)
+    return pixels(path).astype(float) @ weights * settings.encoding.white_luminance
 
 
 def texels(baked, settings):
     """Directions, solid angles and luminances of all texels of a baked map, each flat."""
-    if settings.projection == "equirect":
-        width = settings.width
+    projection = settings.view.projection
+    if projection.name == "equirect":
+        width = projection.width
         vectors = equirect.directions(width, width // 2)
         size = np.repeat(equirect.solid_angles(width, width // 2)[:, None], width, axis=1)
         values = luminance(baked.files[0], settings)
         return vectors.reshape(-1, 3), size.ravel(), values.ravel()
     assert [Path(file).stem[-2:] for file in baked.files] == list(cubemap.FACES)
-    edge = settings.width
+    edge = projection.edge
     return (
         np.concatenate([cubemap.face_directions(f, edge).reshape(-1, 3) for f in cubemap.FACES]),
         np.tile(cubemap.solid_angles(edge).ravel(), 6),

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from skybake.baking.scene import Scene
-from skybake.baking.settings import MapSettings
+from skybake.image.scene import Scene
+from skybake.image.settings import map_settings
 from skybake.preset import (
     ExponentialProfile,
     Ground,
@@ -53,7 +53,7 @@ def world(name):
 
 @functools.cache
 def scene(name, elevation):
-    settings = MapSettings(sun_elevation=math.radians(elevation), units="nits")
+    settings = map_settings(sun_elevation=math.radians(elevation), units="nits")
     made = Scene(world(name), settings)
     if elevation != 60.0:
         made.sky.__dict__["atmosphere"] = scene(name, 60.0).sky.atmosphere

@@ -6,8 +6,9 @@ import numpy as np
 import OpenImageIO
 import pytest
 
-from skybake.baking import MapSettings, bake
+from skybake.baking import bake
 from skybake.errors import OutputError
+from skybake.image.settings import map_settings
 from skybake.jit import workers
 from skybake.projection.cubemap import FACES
 from tests.baking.maps import bake_map, pixels
@@ -20,7 +21,7 @@ from tests.formats.maps import listing
         (30.0, {}, "half"),
         (30.0, {"units": "nits"}, "float"),  # the disc would overflow
         (30.0, {"units": "nits", "sun_disc": "exclude"}, "half"),
-        (30.0, {"width": 4096, "sun_disc": "only"}, "half"),
+        (30.0, {"size": 4096, "sun_disc": "only"}, "half"),
         (-6.0, {}, "float"),  # twilight would be denormal
         (-6.0, {"ev": 0.0}, "half"),
         (-90.0, {}, "float"),
@@ -37,7 +38,7 @@ def test_half_is_taken_only_where_it_loses_nothing(tmp_path, elevation, options,
 
 @pytest.mark.parametrize("elevation", [60.0, 30.0, 5.0, 0.0, -2.0, -4.0, -8.0])
 def test_no_sky_value_of_a_half_map_is_denormal(tmp_path, elevation):
-    baked, _ = bake_map(tmp_path / "a.exr", elevation=elevation, width=256)
+    baked, _ = bake_map(tmp_path / "a.exr", elevation=elevation, size=256)
     if baked.pixel == "half":
         values = np.abs(pixels(baked.files[0]) @ [0.2126, 0.7152, 0.0722])
         assert values.min() >= 2.0**-14
@@ -71,8 +72,8 @@ def test_units_only_scale(tmp_path):
     ev15, a = bake_map(tmp_path / "ev15.exr", pixel="float")
     nits, b = bake_map(tmp_path / "nits.exr", pixel="float", units="nits")
     ev9, c = bake_map(tmp_path / "ev9.exr", pixel="float", ev=9.0)
-    assert (a.white_luminance, b.white_luminance) == (1.2 * 2**15, 1.0)
-    assert c.white_luminance == 1.2 * 2**9
+    assert (a.encoding.white_luminance, b.encoding.white_luminance) == (1.2 * 2**15, 1.0)
+    assert c.encoding.white_luminance == 1.2 * 2**9
     np.testing.assert_allclose(
         pixels(nits.files[0]), pixels(ev15.files[0]) * 1.2 * 2**15, rtol=2e-6
     )
@@ -108,20 +109,20 @@ def test_same_map_has_the_same_bytes_whatever_the_threads(tmp_path, monkeypatch)
 
 
 def test_six_faces_appear(tmp_path):
-    baked, _ = bake_map(tmp_path / "a.exr", projection="cubemap", width=16)
+    baked, _ = bake_map(tmp_path / "a.exr", projection="cubemap", size=16)
     assert listing(tmp_path) == sorted(f"a_{face}.exr" for face in FACES)
     assert [file.name for file in baked.files] == [f"a_{face}.exr" for face in FACES]
 
 
 def test_faces_take_their_place_in_a_name(tmp_path):
-    bake_map(tmp_path / "sky.{face}.exr", projection="cubemap", width=8)
+    bake_map(tmp_path / "sky.{face}.exr", projection="cubemap", size=8)
     assert listing(tmp_path) == sorted(f"sky.{face}.exr" for face in FACES)
 
 
 def test_no_face_appears_if_one_cannot(tmp_path):
     (tmp_path / "a_nz.exr").mkdir()
     with pytest.raises(OutputError):
-        bake_map(tmp_path / "a.exr", projection="cubemap", width=16)
+        bake_map(tmp_path / "a.exr", projection="cubemap", size=16)
     assert listing(tmp_path) == ["a_nz.exr"]
 
 
@@ -129,7 +130,7 @@ def test_old_faces_stay_whole_if_a_new_one_cannot_appear(tmp_path):
     (tmp_path / "a_px.exr").write_bytes(b"old")
     (tmp_path / "a_ny.exr").mkdir()
     with pytest.raises(OutputError):
-        bake_map(tmp_path / "a.exr", projection="cubemap", width=16)
+        bake_map(tmp_path / "a.exr", projection="cubemap", size=16)
     assert (tmp_path / "a_px.exr").read_bytes() == b"old"
     assert listing(tmp_path) == ["a_ny.exr", "a_px.exr"]
 
@@ -154,7 +155,7 @@ def test_header_tells_sun_light_and_recipe(tmp_path):
 
 def test_progress_rises_to_one(tmp_path):
     shares = []
-    bake("earth", tmp_path / "a.exr", MapSettings(width=1024), progress=shares.append)
+    bake("earth", tmp_path / "a.exr", map_settings(size=1024), progress=shares.append)
     assert shares == sorted(shares)
     assert shares[-1] == 1.0
     assert len(shares) > 2
@@ -162,13 +163,13 @@ def test_progress_rises_to_one(tmp_path):
 
 @pytest.mark.parametrize(
     ("suffix", "options"),
-    [(".exr", {}), (".hdr", {}), (".exr", {"projection": "cubemap", "cube_layout": "exr"})],
+    [(".exr", {}), (".hdr", {}), (".exr", {"projection": "cubemap", "layout": "exr"})],
 )
 def test_bands_do_not_show(tmp_path, monkeypatch, suffix, options):
     """A map written in one band is the map written in many."""
     from skybake.baking import write
 
-    whole, _ = bake_map(tmp_path / f"whole{suffix}", width=96, **options)
+    whole, _ = bake_map(tmp_path / f"whole{suffix}", size=96, **options)
     monkeypatch.setattr(write, "BAND_ROWS", 7)
-    bands, _ = bake_map(tmp_path / f"bands{suffix}", width=96, **options)
+    bands, _ = bake_map(tmp_path / f"bands{suffix}", size=96, **options)
     np.testing.assert_array_equal(pixels(whole.files[0]), pixels(bands.files[0]))

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from skybake.baking import MapSettings
-from skybake.baking.scene import Scene
+from skybake.image.scene import Scene
+from skybake.image.settings import map_settings
 from skybake.preset import load_preset
 from tests.baking.maps import bake_map, illuminance, pixels, texels
 from tests.kernels import fill_ground_irradiance, fill_sun_column
@@ -16,7 +16,7 @@ from tests.kernels import fill_ground_irradiance, fill_sun_column
 @pytest.mark.parametrize("width", [64, 256, 1024, pytest.param(4096, marks=pytest.mark.slow)])
 def test_disc_on_an_equirect_map_gives_the_direct_illuminance(tmp_path, width, elevation):
     baked, settings = bake_map(
-        tmp_path / "a.exr", elevation=elevation, width=width, sun_disc="only", pixel="float"
+        tmp_path / "a.exr", elevation=elevation, size=width, sun_disc="only", pixel="float"
     )
     assert illuminance(baked, settings) == pytest.approx(baked.direct_illuminance, rel=1e-3)
 
@@ -34,7 +34,7 @@ def test_disc_gives_the_normal_illuminance_however_it_is_mapped(tmp_path, projec
     baked, settings = bake_map(
         tmp_path / "a.exr",
         elevation=elevation,
-        width=512,
+        size=512,
         projection=projection,
         sun_azimuth=0.7,
         sun_disc="only",
@@ -47,7 +47,7 @@ def test_disc_gives_the_normal_illuminance_however_it_is_mapped(tmp_path, projec
 def test_disc_on_a_cubemap_gives_the_direct_illuminance(tmp_path, elevation):
     """A texel shines from its centre, so within the tangent of its size."""
     baked, settings = bake_map(
-        tmp_path / "a.exr", elevation=elevation, width=1024, projection="cubemap", sun_disc="only"
+        tmp_path / "a.exr", elevation=elevation, size=1024, projection="cubemap", sun_disc="only"
     )
     assert illuminance(baked, settings) == pytest.approx(baked.direct_illuminance, rel=2e-3)
 
@@ -65,7 +65,7 @@ def test_disc_on_a_cubemap_gives_the_direct_illuminance(tmp_path, elevation):
 )
 def test_sky_on_a_map_gives_the_sky_illuminance(tmp_path, preset, elevation, projection):
     baked, settings = bake_map(
-        tmp_path / "a.exr", preset, elevation, width=256, projection=projection, sun_disc="exclude"
+        tmp_path / "a.exr", preset, elevation, size=256, projection=projection, sun_disc="exclude"
     )
     # Mars' aureole has a peak narrower than a texel, which its centre may miss or overrate.
     tolerance = 0.03 if preset == "mars" else 0.005
@@ -90,7 +90,7 @@ def test_a_sun_that_has_set_leaves_no_disc(tmp_path):
 
 def test_marching_gives_the_same_sun_and_less_sky(tmp_path):
     full, _ = bake_map(tmp_path / "full.exr")
-    march, _ = bake_map(tmp_path / "march.exr", width=32, method="march")
+    march, _ = bake_map(tmp_path / "march.exr", size=32, method="march")
     assert march.direct_illuminance == pytest.approx(full.direct_illuminance, rel=1e-3)
     assert 0.5 < march.sky_illuminance / full.sky_illuminance < 0.95
 
@@ -118,7 +118,7 @@ def solved_illuminance(scene):
 @pytest.mark.parametrize("preset", ["earth", "mars"])
 def test_light_of_a_map_is_the_solvers_own_within_half_a_percent(tmp_path, preset, elevation):
     baked, settings = bake_map(
-        tmp_path / "a.exr", preset, elevation, width=512, units="nits", pixel="float"
+        tmp_path / "a.exr", preset, elevation, size=512, units="nits", pixel="float"
     )
-    scene = Scene(load_preset(preset), MapSettings(math.radians(elevation)))
+    scene = Scene(load_preset(preset), map_settings(sun_elevation=math.radians(elevation)))
     assert illuminance(baked, settings) == pytest.approx(solved_illuminance(scene), rel=0.005)

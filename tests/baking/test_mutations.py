@@ -21,7 +21,7 @@ def bakes_finite_map_or_refuses(folder, preset, method):
         warnings.simplefilter("ignore", PresetWarning)
         try:
             planet = load_preset(path)
-            bake_map(folder / "a.exr", planet, 5.0, width=16, pixel="float", method=method)
+            bake_map(folder / "a.exr", planet, 5.0, size=16, pixel="float", method=method)
         except SkybakeError as error:
             refusal = str(error)
     if refusal is None:

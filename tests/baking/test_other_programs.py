@@ -51,8 +51,8 @@ def assert_same_face(got, expected, typical, worst, face=""):
 @pytest.mark.parametrize(
     ("options", "kind"),
     [
-        ({"width": 64}, "latitude-longitude map"),
-        ({"projection": "cubemap", "width": 16, "cube_layout": "exr"}, "cube-face map"),
+        ({"size": 64}, "latitude-longitude map"),
+        ({"projection": "cubemap", "size": 16, "layout": "exr"}, "cube-face map"),
     ],
 )
 def test_exrheader_tells_the_kind_of_map(tmp_path, options, kind):
@@ -63,13 +63,13 @@ def test_exrheader_tells_the_kind_of_map(tmp_path, options, kind):
 
 
 def test_single_faces_do_not_claim_to_be_whole_maps(tmp_path):
-    bake_map(tmp_path / "a.exr", projection="cubemap", width=16)
+    bake_map(tmp_path / "a.exr", projection="cubemap", size=16)
     assert "(type envmap)" not in run(program("exrheader"), tmp_path / "a_px.exr")
 
 
 def test_exrenvmap_makes_our_cube_of_our_equirect_map(tmp_path):
-    bake_map(tmp_path / "flat.exr", width=512, **SKY)
-    cube = {"projection": "cubemap", "width": EDGE, "cube_layout": "exr"}
+    bake_map(tmp_path / "flat.exr", size=512, **SKY)
+    cube = {"projection": "cubemap", "size": EDGE, "layout": "exr"}
     bake_map(tmp_path / "ours.exr", **cube, **SKY)
     run(program("exrenvmap"), "-c", "-w", EDGE, tmp_path / "flat.exr", tmp_path / "theirs.exr")
     ours = pixels(tmp_path / "ours.exr").reshape(6, EDGE, EDGE, 3)
@@ -79,8 +79,8 @@ def test_exrenvmap_makes_our_cube_of_our_equirect_map(tmp_path):
 
 
 def test_exrenvmap_makes_our_equirect_map_of_our_cube(tmp_path):
-    bake_map(tmp_path / "flat.exr", width=256, **SKY)
-    cube = {"projection": "cubemap", "width": 256, "cube_layout": "exr"}
+    bake_map(tmp_path / "flat.exr", size=256, **SKY)
+    cube = {"projection": "cubemap", "size": 256, "layout": "exr"}
     bake_map(tmp_path / "cube.exr", **cube, **SKY)
     run(program("exrenvmap"), "-l", "-w", 256, tmp_path / "cube.exr", tmp_path / "theirs.exr")
     expected, got = pixels(tmp_path / "flat.exr"), pixels(tmp_path / "theirs.exr")
@@ -93,8 +93,8 @@ def test_exrenvmap_makes_our_equirect_map_of_our_cube(tmp_path):
 
 @pytest.mark.parametrize("suffix", [".exr", ".hdr"])
 def test_cmgen_takes_our_faces_from_our_equirect_map(tmp_path, suffix):
-    bake_map(tmp_path / f"flat{suffix}", width=512, **SKY)
-    baked, _ = bake_map(tmp_path / "ours.exr", projection="cubemap", width=EDGE, **SKY)
+    bake_map(tmp_path / f"flat{suffix}", size=512, **SKY)
+    baked, _ = bake_map(tmp_path / "ours.exr", projection="cubemap", size=EDGE, **SKY)
     extract = [f"--extract={tmp_path / 'theirs'}", "-f", "exr", "-s", EDGE]
     run(program("cmgen"), "-q", *extract, tmp_path / f"flat{suffix}")
     for face, file in zip(cubemap.FACES, baked.files, strict=True):
@@ -104,8 +104,8 @@ def test_cmgen_takes_our_faces_from_our_equirect_map(tmp_path, suffix):
 
 def test_cmgen_reads_our_cross(tmp_path):
     """Its own crosses, too, have +Z in the middle and -Z at the right."""
-    baked, _ = bake_map(tmp_path / "ours.exr", projection="cubemap", width=EDGE, **SKY)
-    bake_map(tmp_path / "cross.exr", projection="cubemap", width=EDGE, cube_layout="cross", **SKY)
+    baked, _ = bake_map(tmp_path / "ours.exr", projection="cubemap", size=EDGE, **SKY)
+    bake_map(tmp_path / "cross.exr", projection="cubemap", size=EDGE, layout="cross", **SKY)
     extract = [f"--extract={tmp_path / 'theirs'}", "--no-mirror", "-f", "exr", "-s", EDGE]
     run(program("cmgen"), "-q", *extract, tmp_path / "cross.exr")
     for face, file in zip(cubemap.FACES, baked.files, strict=True):

@@ -6,15 +6,15 @@ import math
 import numpy as np
 import pytest
 
-from skybake.baking.scene import Scene
-from skybake.baking.settings import MapSettings
+from skybake.image.scene import Scene
+from skybake.image.settings import map_settings
 from skybake.preset import load_preset
 from tests.skies import view_cosines
 
 
 @functools.cache
 def scene(preset, elevation):
-    settings = MapSettings(sun_elevation=math.radians(elevation), units="nits")
+    settings = map_settings(sun_elevation=math.radians(elevation), units="nits")
     made = Scene(load_preset(preset), settings)
     if elevation != 30.0:
         made.sky.__dict__["atmosphere"] = scene(preset, 30.0).sky.atmosphere

@@ -5,10 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from skybake.baking import MapSettings, bake
+from skybake.baking import bake
 from skybake.baking.preview import legible_ev, preview_file
 from skybake.colour.exposure import luminance_from_ev
 from skybake.colour.space import find_colour_space
+from skybake.image.settings import map_settings
 from tests.baking.maps import pixels
 
 REC709 = find_colour_space("lin_rec709")
@@ -20,10 +21,10 @@ SCENES = [
 ]
 
 WAYS = {
-    "equirect": {"width": 256},
-    "cross": {"projection": "cubemap", "width": 64, "cube_layout": "cross"},
-    "column": {"projection": "cubemap", "width": 64, "cube_layout": "exr"},
-    "faces": {"projection": "cubemap", "width": 32},
+    "equirect": {"size": 256},
+    "cross": {"projection": "cubemap", "size": 64, "layout": "cross"},
+    "column": {"projection": "cubemap", "size": 64, "layout": "exr"},
+    "faces": {"projection": "cubemap", "size": 32},
 }
 
 
@@ -31,7 +32,9 @@ WAYS = {
 def test_one_scene_has_one_exposure_in_all_projections(tmp_path, preset, elevation, altitude):
     found = {}
     for way, options in WAYS.items():
-        settings = MapSettings(math.radians(elevation), altitude=altitude, pixel="float", **options)
+        settings = map_settings(
+            sun_elevation=math.radians(elevation), altitude=altitude, pixel="float", **options
+        )
         path = tmp_path / f"{way}.exr"
         found[way] = bake(preset, path, settings, preview=path.with_suffix(".png")).preview_ev
         if path.exists():
@@ -43,7 +46,7 @@ def test_one_scene_has_one_exposure_in_all_projections(tmp_path, preset, elevati
 @pytest.mark.parametrize("elevation", [20.0, 5.0])
 def test_the_light_around_the_sun_of_mars_is_neither_white_nor_red(tmp_path, elevation):
     path = tmp_path / "a.png"
-    settings = MapSettings(math.radians(elevation), width=512)
+    settings = map_settings(sun_elevation=math.radians(elevation), size=512)
     bake("mars", tmp_path / "a.exr", settings, preview=path)
     codes = 255.0 * pixels(path)
     white = (codes.min(axis=-1) >= 250).mean()

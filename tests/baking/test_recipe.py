@@ -5,12 +5,13 @@ import json
 import numpy as np
 import OpenImageIO
 
-from skybake.baking import MapSettings, bake
+from skybake.baking import bake
+from skybake.image.settings import map_settings
 from skybake.preset import load_preset
 from skybake.preset.toml import toml_text
 from tests.baking.maps import pixels
 
-SETTINGS = MapSettings(width=32, method="hillaire", pixel="float")
+SETTINGS = map_settings(size=32, method="hillaire", pixel="float")
 
 
 def test_the_recipe_of_a_changed_world_makes_the_same_map_again(tmp_path):

@@ -6,10 +6,11 @@ import math
 import numpy as np
 import pytest
 
-from skybake.baking.scene import Scene
-from skybake.baking.settings import MapSettings
+from skybake.image.scene import Scene
+from skybake.image.settings import map_settings
 from skybake.preset import load_preset
 from skybake.projection import cubemap, equirect
+from skybake.projection.frame import zenith_bearing
 from tests.baking.maps import bake_map, pixels
 
 PRESETS = ("earth", "mars", "earth-hillaire2020")
@@ -17,7 +18,7 @@ PRESETS = ("earth", "mars", "earth-hillaire2020")
 
 @functools.cache
 def scene(preset, elevation, altitude=0.0, **options):
-    settings = MapSettings(
+    settings = map_settings(
         sun_elevation=math.radians(elevation), altitude=altitude, units="nits", **options
     )
     made = Scene(load_preset(preset), settings)
@@ -38,7 +39,7 @@ def sky_luminance(made, rows=32):
 def sample(image, vectors):
     """Bilinear lookup of directions in an equirect image."""
     height, width = image.shape[:2]
-    zenith, bearing = cubemap.zenith_bearing(vectors)
+    zenith, bearing = zenith_bearing(vectors)
     row = np.clip(zenith / math.pi * height - 0.5, 0.0, height - 1.001)
     column = bearing % (2.0 * math.pi) / (2.0 * math.pi) * width - 0.5
     i, j = np.floor(row).astype(int), np.floor(column).astype(int)
@@ -53,9 +54,9 @@ def sample(image, vectors):
 def test_equirect_and_cubemap_show_the_same_sky(tmp_path, preset, elevation):
     """At every texel of every face but those that touch the horizon and the aureole's peak."""
     options = {"sun_disc": "exclude", "pixel": "float", "sun_azimuth": 2.2}
-    flat, _ = bake_map(tmp_path / "flat.exr", preset, elevation, width=1024, **options)
+    flat, _ = bake_map(tmp_path / "flat.exr", preset, elevation, size=1024, **options)
     cube, _ = bake_map(
-        tmp_path / "cube.exr", preset, elevation, width=64, projection="cubemap", **options
+        tmp_path / "cube.exr", preset, elevation, size=64, projection="cubemap", **options
     )
     image = pixels(flat.files[0])
     sun = np.array(flat.sun_direction)
@@ -69,10 +70,10 @@ def test_equirect_and_cubemap_show_the_same_sky(tmp_path, preset, elevation):
 
 def test_cross_exr_cube_and_faces_hold_the_same_pixels(tmp_path):
     edge = 32
-    options = {"projection": "cubemap", "width": edge, "sun_azimuth": 0.4}
+    options = {"projection": "cubemap", "size": edge, "sun_azimuth": 0.4}
     faces, _ = bake_map(tmp_path / "a.exr", **options)
-    cross, _ = bake_map(tmp_path / "cross.exr", cube_layout="cross", **options)
-    column, _ = bake_map(tmp_path / "column.exr", cube_layout="exr", **options)
+    cross, _ = bake_map(tmp_path / "cross.exr", layout="cross", **options)
+    column, _ = bake_map(tmp_path / "column.exr", layout="exr", **options)
     cross_pixels, column_pixels = pixels(cross.files[0]), pixels(column.files[0])
     assert cross_pixels.shape == (3 * edge, 4 * edge, 3)
     assert column_pixels.shape == (6 * edge, edge, 3)
@@ -92,7 +93,7 @@ def test_cross_exr_cube_and_faces_hold_the_same_pixels(tmp_path):
 @pytest.mark.parametrize("azimuth", [0.0, 45.0, 90.0, 180.0, 270.0])
 def test_sun_stands_at_its_bearing(tmp_path, azimuth):
     baked, _ = bake_map(
-        tmp_path / "a.exr", elevation=40.0, width=360, sun_azimuth=math.radians(azimuth)
+        tmp_path / "a.exr", elevation=40.0, size=360, sun_azimuth=math.radians(azimuth)
     )
     image = pixels(baked.files[0]).sum(axis=-1)
     row, column = np.unravel_index(image.argmax(), image.shape)
@@ -104,7 +105,7 @@ def test_sun_stands_at_its_bearing(tmp_path, azimuth):
 @pytest.mark.parametrize("preset", PRESETS)
 def test_no_seam_is_at_the_wrap(tmp_path, preset):
     """With the sun elsewhere, neighbours across the wrap differ as neighbours do."""
-    baked, _ = bake_map(tmp_path / "a.exr", preset, 20.0, width=512, sun_azimuth=1.0, pixel="float")
+    baked, _ = bake_map(tmp_path / "a.exr", preset, 20.0, size=512, sun_azimuth=1.0, pixel="float")
     image = pixels(baked.files[0]).astype(float)
     step = np.abs(np.diff(np.concatenate([image[:, -3:], image[:, :3]], axis=1), axis=1))
     assert (step[:, 2] <= 1.5 * step.max(axis=1) + 1e-6 * image.max()).all()

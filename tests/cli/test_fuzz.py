@@ -25,6 +25,8 @@ EXAMPLES = {
     "sun_azimuth": ["0deg", "270deg", "1e9deg"],
     "altitude": ["0m", "12km", "400km", "-1m", "1e30km", "0m..400km"],
     "size": ["16x8", "16", "0x0", "16x9", "4x2"],
+    "fov": ["40deg", "180deg", "0deg", "300deg"],
+    "look": ["180,-18", "90deg,0.1rad", "0,91", "180", "x,y"],
     "ev": ["15", "-40", "1e400"],
     "compression": ["zip:4", "piz", "dwaa:45", "lzw", "zip:x"],
     "preview_ev": ["auto", "12", "adapt"],

@@ -1,6 +1,5 @@
 """Help is quick, complete and true."""
 
-import dataclasses
 import json
 import re
 from pathlib import Path
@@ -9,14 +8,16 @@ import click
 import pytest
 
 import skybake
-from skybake.baking import MapSettings, settings
 from skybake.cli import main
 from skybake.colour.exposure import UNITS
 from skybake.colour.space import COLOUR_SPACES
 from skybake.commands import parameters
 from skybake.commands.render import render
 from skybake.formats.preview import VIEWS
+from skybake.image import settings
 from skybake.preset import preset_names
+from skybake.projection import PROJECTIONS
+from skybake.projection.cubemap import LAYOUTS
 from skybake.sky.sky import METHODS
 from tests.cli.runs import invoke, run
 
@@ -60,7 +61,7 @@ COMMANDS = list(_commands(main))
         ("sequence", "--frames", "1-3", "-o", "sky.jpg"),
         ("presets", "list"),
         ("presets", "show", "mars"),
-        ("render", "--size", "64x63"),
+        ("render", "--size", "64x"),
         ("render", "--sun", "95deg"),
         ("render", "--colorspace", "srgb"),
     ],
@@ -87,8 +88,8 @@ def test_a_command_loads_no_other(tmp_path):
 
 
 def test_choices_are_those_of_the_engine():
-    assert parameters.PROJECTIONS == settings.PROJECTIONS
-    assert parameters.CUBE_LAYOUTS == settings.CUBE_LAYOUTS
+    assert tuple(PROJECTIONS) == parameters.PROJECTIONS
+    assert parameters.CUBE_LAYOUTS == LAYOUTS
     assert tuple(COLOUR_SPACES) == parameters.COLOUR_SPACES
     assert parameters.UNITS == UNITS
     assert parameters.PIXELS == settings.PIXELS
@@ -100,7 +101,9 @@ def test_choices_are_those_of_the_engine():
 def test_defaults_are_those_of_the_engine():
     context = render.make_context("render", [])
     given = {key: value for key, value in context.params.items() if value is not None}
-    engine = dataclasses.asdict(MapSettings())
+    made = settings.MapSettings()
+    engine = vars(made.lighting) | vars(made.encoding) | {"altitude": made.view.altitude}
+    engine["projection"] = made.view.projection.name
     shared = given.keys() & engine.keys()
     assert {key: given[key] for key in shared} == {key: engine[key] for key in shared}
     assert len(shared) == 8

@@ -7,8 +7,9 @@ from pathlib import Path
 import OpenImageIO
 import pytest
 
-from skybake.baking import MapSettings, bake
+from skybake.baking import bake
 from skybake.formats.reader import read_image
+from skybake.image.settings import map_settings
 from tests.cli.runs import SMALL, invoke, listing
 
 
@@ -29,7 +30,7 @@ def render(*arguments):
 
 def test_json_says_what_was_baked(folder):
     told = render(*SMALL, "--sun", "30deg", "--sun-azimuth", "90deg", "-o", "a.exr")
-    baked = bake("earth", "b.exr", MapSettings(width=64, sun_azimuth=math.pi / 2))
+    baked = bake("earth", "b.exr", map_settings(size=64, sun_azimuth=math.pi / 2))
     assert told["files"] == ["a.exr"]
     assert told["preset"] == "earth"
     assert told["sun_direction"] == pytest.approx([math.sqrt(0.75), 0.5, 0.0], abs=1e-12)

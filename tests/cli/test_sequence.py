@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from skybake.baking import MapSettings
 from skybake.errors import OutputError
+from skybake.image.settings import map_settings
 from skybake.preset import load_preset
 from skybake.sequence.plan import Frame, Plan
 from tests.cli.runs import invoke, listing
@@ -258,7 +258,7 @@ def test_places_have_their_clock_and_their_sun(place):
 
 
 def test_two_frames_never_share_a_file(folder):
-    settings = MapSettings(width=16, projection="cubemap")
+    settings = map_settings(size=16, projection="cubemap")
     first, second = (Frame(i, 0, settings, Path(f"a.{i}.exr")) for i in (1, 2))
     for name in ("a.1_px.exr", "a.2_nz.exr"):
         (folder / name).symlink_to(folder / "same.exr")

@@ -43,7 +43,7 @@ def write(path, rows):
 def test_map_is_as_it_was(tmp_path, request, preset, elevation, altitude):
     name = f"{preset}_{elevation:+05.1f}deg_{altitude:g}km.exr"
     golden = FOLDER / name
-    options = {"altitude": altitude, "width": 64, "pixel": "float"}
+    options = {"altitude": altitude, "size": 64, "pixel": "float"}
     if request.config.getoption("--update-goldens"):
         FOLDER.mkdir(exist_ok=True)
         bake_map(golden, preset, elevation, **options)

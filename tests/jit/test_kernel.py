@@ -188,7 +188,7 @@ WARM_RENDER = """
 import sys
 from pathlib import Path
 import skybake
-skybake.bake(skybake.load_preset("earth"), Path("sky.exr"), skybake.MapSettings(width=64))
+skybake.bake(skybake.load_preset("earth"), Path("sky.exr"), skybake.map_settings(size=64))
 loaded = {"numba", "scipy", "colour"} & set(sys.modules)
 print(loaded or "none", sum(name.startswith("llvmlite") for name in sys.modules) > 0)
 """

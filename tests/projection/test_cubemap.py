@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from skybake.projection import cubemap
 from skybake.projection.cubemap import CROSS_ORIGINS, FACES
+from skybake.projection.frame import zenith_bearing
 
 SUN_RADIUS = math.radians(0.2666)
 AXES = {
@@ -29,7 +30,8 @@ OPENGL = {
 
 
 def disc(face, edge, elevation, bearing, radius=SUN_RADIUS):
-    return cubemap.disc_cells(face, edge, math.radians(90.0 - elevation), bearing, radius)
+    chart = cubemap.FaceChart(face, edge)
+    return chart.disc_cells(math.radians(90.0 - elevation), bearing, radius)
 
 
 def test_faces_come_in_the_order_of_opengl():
@@ -55,7 +57,7 @@ def test_middle_of_a_face_looks_along_its_axis(face):
 @pytest.mark.parametrize("face", FACES)
 def test_a_band_of_rows_is_that_band_of_the_face(face):
     whole = cubemap.face_directions(face, 12)
-    np.testing.assert_array_equal(cubemap.face_directions(face, 12, 5, 9), whole[5:9])
+    np.testing.assert_array_equal(cubemap.FaceChart(face, 12).vectors(5, 9), whole[5:9])
 
 
 @pytest.mark.parametrize("edge", [1, 2, 16, 333])
@@ -79,7 +81,7 @@ def test_zenith_and_bearing_restore_the_direction(zenith, bearing):
             -math.sin(zenith) * math.cos(bearing),
         ]
     )
-    theta, phi = cubemap.zenith_bearing(vector)
+    theta, phi = zenith_bearing(vector)
     assert theta == pytest.approx(zenith, abs=1e-12)
     back = [math.sin(theta) * math.sin(phi), math.cos(theta), -math.sin(theta) * math.cos(phi)]
     assert back == pytest.approx(vector, abs=1e-12)
@@ -139,10 +141,9 @@ def test_faces_meet_at_the_edges_of_the_cross():
 
 @pytest.mark.parametrize("face", cubemap.FACES)
 def test_angles_of_a_face_are_those_of_its_directions(face):
-    zenith, bearing = cubemap.face_angles(face, 12, 2, 11)
-    expected_zenith, expected_bearing = cubemap.zenith_bearing(
-        cubemap.face_directions(face, 12, 2, 11)
-    )
+    chart = cubemap.FaceChart(face, 12)
+    zenith, bearing = chart.angles(2, 11)
+    expected_zenith, expected_bearing = zenith_bearing(chart.vectors(2, 11))
     np.testing.assert_allclose(zenith, expected_zenith, rtol=0.0, atol=1e-14)
     turn = np.exp(1j * (bearing - expected_bearing))
     np.testing.assert_allclose(turn, 1.0, rtol=0.0, atol=1e-14)

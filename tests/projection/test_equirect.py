@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from skybake.projection import equirect
-from skybake.projection.cubemap import zenith_bearing
+from skybake.projection.frame import zenith_bearing
 
 SUN_RADIUS = math.radians(0.2666)
 SIZES = [64, 256, 1024, 4096, 16384]
@@ -16,7 +16,9 @@ ELEVATIONS = [-89.9, -45.0, -0.1, 0.0, 0.13, 5.0, 30.0, 60.0, 80.0, 87.0, 89.7, 
 def flux_on_map(width, elevation, bearing, radius=SUN_RADIUS):
     """Flux and its vertical component of an even disc of radiance 1, cells and texels."""
     height = width // 2
-    cells = equirect.disc_cells(width, height, math.radians(90.0 - elevation), bearing, radius)
+    cells = equirect.EquirectChart(width).disc_cells(
+        math.radians(90.0 - elevation), bearing, radius
+    )
     texel_flux = cells.weight * cells.solid_angle[:, None]
     row = cells.texel // width
     size = equirect.solid_angles(width, height)[row]
@@ -116,7 +118,9 @@ def test_disc_keeps_its_vertical_component_within_a_per_mille(width, elevation):
 @pytest.mark.parametrize("width", SIZES)
 def test_cells_of_a_disc_keep_the_integral_of_limb_darkening(width, elevation):
     """Of 1 - u (1 - mu), the root of whose distance from the limb is hard to integrate."""
-    cells = equirect.disc_cells(width, width // 2, math.radians(90.0 - elevation), 2.0, SUN_RADIUS)
+    cells = equirect.EquirectChart(width).disc_cells(
+        math.radians(90.0 - elevation), 2.0, SUN_RADIUS
+    )
     mu = np.sqrt(1.0 - (np.sin(cells.distance) / math.sin(SUN_RADIUS)) ** 2)
     got = (cells.solid_angle * (1.0 - 0.6 * (1.0 - mu))).sum()
     expected = (1.0 - 0.6 / 3.0) * math.pi * math.sin(SUN_RADIUS) ** 2
@@ -135,7 +139,7 @@ def test_disc_on_the_wrap_is_the_disc_elsewhere():
     width = 1024
     images = []
     for bearing, shift in ((0.0, 0), (math.pi, width // 2)):
-        cells = equirect.disc_cells(width, width // 2, math.radians(60.0), bearing, SUN_RADIUS)
+        cells = equirect.EquirectChart(width).disc_cells(math.radians(60.0), bearing, SUN_RADIUS)
         image = np.bincount(
             cells.texel.ravel(),
             (cells.weight * cells.solid_angle[:, None]).ravel(),
@@ -151,7 +155,7 @@ def test_a_sun_that_moves_by_a_tenth_of_a_texel_does_not_flicker():
     peaks = []
     for i in range(20):
         zenith = math.radians(45.0) + i * step
-        cells = equirect.disc_cells(width, width // 2, zenith, 2.0, SUN_RADIUS)
+        cells = equirect.EquirectChart(width).disc_cells(zenith, 2.0, SUN_RADIUS)
         flux = cells.weight * cells.solid_angle[:, None]
         peaks.append(np.bincount(cells.texel.ravel(), flux.ravel()).max())
     assert np.abs(np.diff(np.log(peaks))).max() < 0.25

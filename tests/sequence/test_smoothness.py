@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from skybake.baking import MapSettings
-from skybake.baking.scene import Scene
+from skybake.image.scene import Scene
+from skybake.image.settings import map_settings
 from skybake.preset import load_preset
 from skybake.sky.view import TWILIGHT_ELEVATION
 
@@ -27,7 +27,7 @@ last direct light does.
 def scenes(preset, elevations):
     planet = load_preset(preset)
     for elevation in elevations:
-        yield Scene(planet, MapSettings(sun_elevation=math.radians(elevation), units="nits"))
+        yield Scene(planet, map_settings(sun_elevation=math.radians(elevation), units="nits"))
 
 
 def sky_luminance(scene):

@@ -8,10 +8,10 @@ import pytest
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdLux, UsdValidation
 
 import skybake
-from skybake.baking import MapSettings
 from skybake.colour.space import COLOUR_SPACES, rgb_from_xyz
 from skybake.errors import InputError, OutputError
 from skybake.formats.reader import read_image
+from skybake.image.settings import map_settings
 from skybake.projection import equirect
 from skybake.sequence.usd import check_usd, write_usd
 from tests.sequence.records import HEADER, direction, record
@@ -96,10 +96,10 @@ def test_the_texel_that_looks_at_the_sun_lies_where_the_light_comes_from(
 
 
 def test_a_baked_sun_has_the_direction_and_the_flux_of_the_light(written, tmp_path):
-    settings = MapSettings(
+    settings = map_settings(
         sun_elevation=math.radians(21.0),
         sun_azimuth=math.radians(312.0),
-        width=128,
+        size=128,
         sun_disc="only",
         pixel="float",
         method="march",

@@ -6,8 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from skybake.baking.scene import Scene
-from skybake.baking.settings import MapSettings
+from skybake.image.scene import Scene
+from skybake.image.settings import map_settings
 from skybake.preset import load_preset
 from skybake.sky.view import AZIMUTHS, horizon_angles
 from tests.skies import view_cosines
@@ -25,7 +25,7 @@ POINT = 1e-9
 
 @functools.cache
 def scene(preset, elevation, altitude=0.0):
-    settings = MapSettings(
+    settings = map_settings(
         sun_elevation=math.radians(elevation), altitude=altitude, colorspace="xyz", units="nits"
     )
     made = Scene(load_preset(preset), settings)

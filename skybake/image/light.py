@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from skybake.baking.scene import Scene
 from skybake.colour.space import find_colour_space, rgb_from_xyz
 from skybake.formats.spec import Attribute
+from skybake.image.scene import Scene
 
 Triple = tuple[float, float, float]
 

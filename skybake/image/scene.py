@@ -7,15 +7,15 @@ from functools import cache, cached_property
 
 import numpy as np
 
-from skybake.baking.settings import MapSettings
 from skybake.colour.observer import xyz_weights
 from skybake.colour.space import find_colour_space, luminance_weights, rgb_from_xyz
+from skybake.image.settings import MapSettings
 from skybake.jit.arguments import flatten
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.medium import Array
 from skybake.optics.spectrum import star_spectrum
 from skybake.preset import Planet
-from skybake.projection.equirect import Cells
+from skybake.projection.cells import Cells
 from skybake.sky.pixels import allocate_pixels, fill_directions
 from skybake.sky.sky import WAVELENGTHS, Sky
 from skybake.sky.sun import SunDisc
@@ -24,6 +24,8 @@ from skybake.sky.view import SkyView
 PROBE_ZENITHS = 192
 PROBE_AZIMUTHS = 256
 CELLS_AT_ONCE = 32768
+
+_LAYERS = {"include": ("sky", "sun"), "exclude": ("sky",), "only": ("sun",)}
 
 
 def luminous_weights(sky: Sky) -> Array:
@@ -64,14 +66,14 @@ class Scene:
         self.workers = workers
         self.sky = Sky(
             planet,
-            settings.sun_elevation,
-            settings.altitude,
-            sun_azimuth=settings.sun_azimuth,
-            method=settings.method,
+            settings.lighting.sun_elevation,
+            settings.view.altitude,
+            sun_azimuth=settings.lighting.sun_azimuth,
+            method=settings.lighting.method,
             workers=workers,
         )
         self.sun = SunDisc(self.sky)
-        self.sun_zenith = math.pi / 2.0 - settings.sun_elevation
+        self.sun_zenith = math.pi / 2.0 - settings.lighting.sun_elevation
 
     @cached_property
     def xyz_weights(self) -> Array:
@@ -81,8 +83,9 @@ class Scene:
     @cached_property
     def rgb_weights(self) -> Array:
         """Pixel values are the radiance per unit irradiance times these, (wavelength, 3)."""
-        to_rgb = rgb_from_xyz(self.settings.space).T
-        weights: Array = self.xyz_weights @ to_rgb / self.settings.white_luminance
+        encoding = self.settings.encoding
+        to_rgb = rgb_from_xyz(encoding.space).T
+        weights: Array = self.xyz_weights @ to_rgb / encoding.white_luminance
         return weights
 
     @cached_property
@@ -91,9 +94,15 @@ class Scene:
         return self.sky.view(self.rgb_weights)
 
     @property
+    def layer_names(self) -> tuple[str, ...]:
+        """Layers that a map of the scene holds."""
+        return _LAYERS[self.settings.lighting.sun_disc]
+
+    @property
     def luminance(self) -> Array:
         """Luminance [cd m⁻²] of pixel values is their product with these, (3,)."""
-        return self.settings.white_luminance * luminance_weights(self.settings.space)
+        encoding = self.settings.encoding
+        return encoding.white_luminance * luminance_weights(encoding.space)
 
     def disc_flux(self, cells: Cells) -> Array:
         """Pixel value times solid angle that each cell of the disc adds, (cell, 3). [sr]"""
@@ -124,11 +133,12 @@ class Scene:
         flux = weight * np.sin(zenith) * np.cos(zenith)
         return float(2.0 * math.pi * (flux * luminance).sum())
 
-    def evaluate(self, zenith: Array, azimuth: Array, height: float) -> np.ndarray:
+    def evaluate(self, zenith: Array, azimuth: Array, footprint: Array | float) -> np.ndarray:
         """Pixel values of the sky, see `fill_directions`, shape (row, column, 3)."""
         rows, columns = np.broadcast_shapes(zenith.shape, azimuth.shape)
         out = np.empty((rows, columns, 3), np.float32)
-        pixels = flatten(self.view), flatten(zenith), flatten(azimuth), height
+        extent = np.atleast_2d(np.asarray(footprint, dtype=float))
+        pixels = flatten(self.view), flatten(zenith), flatten(azimuth), flatten(extent)
 
         def work(first: int, last: int) -> None:
             scratch = allocate_pixels(self.view, columns)

@@ -1,0 +1,147 @@
+"""Canvases filled with the light of a scene, band by band."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from skybake.image.layers import RGB, Layer, Layers, Pixels
+from skybake.image.scene import Scene
+from skybake.image.splat import Splat
+from skybake.projection.chart import Canvas, Chart, Part
+
+LIMB_SAMPLES = 16
+LIMB_COARSE = 0.05
+
+
+class Raster:
+    """The picture of a scene on a canvas.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is shown.
+    canvas : Canvas
+        Where its pixels look.
+
+    Attributes
+    ----------
+    peak : float
+        Largest value that the sun's disc adds to a pixel.
+    """
+
+    def __init__(self, scene: Scene, canvas: Canvas) -> None:
+        self._scene = scene
+        self.canvas = canvas
+        self._shown = [_Shown(scene, part) for part in canvas.parts]
+        self.peak = max(each.sun.peak for each in self._shown)
+
+    def rows(self, first: int, last: int) -> Pixels:
+        """Light of all layers in the rows first..last, shape (last - first, width, 3)."""
+        pixels = self.layers(first, last).added()
+        if self._scene.settings.encoding.clamp_negative:
+            np.maximum(pixels, 0.0, out=pixels)
+        return pixels
+
+    def layers(self, first: int, last: int) -> Layers:
+        """Layers of the rows first..last."""
+        planes = []
+        for name in self._scene.layer_names:
+            plane = self._plane(name, first, last)
+            if plane is not None:
+                planes.append(plane)
+        return Layers(last - first, self.canvas.width, tuple(planes))
+
+    def _plane(self, name: str, first: int, last: int) -> Layer | None:
+        if len(self._shown) == 1:
+            return self._shown[0].plane(name, first, last)
+        pixels = np.zeros((last - first, self.canvas.width, len(RGB)), np.float32)
+        for shown in self._shown:
+            shown.fill(name, first, last, pixels)
+        return Layer(name, RGB, 0, pixels)
+
+
+class _Shown:
+    """A part of a canvas, and what of the scene it shows."""
+
+    def __init__(self, scene: Scene, part: Part) -> None:
+        self._scene, self._part = scene, part
+        self._chart = part.chart
+        self.sun = Splat(scene, part.chart)
+
+    def plane(self, name: str, first: int, last: int) -> Layer | None:
+        """Return a layer of the chart's rows first..last, or None where it is black."""
+        if name == "sun":
+            begin, pixels = self.sun.rows(first, last)
+            return Layer(name, RGB, begin, pixels) if len(pixels) else None
+        return Layer(name, RGB, 0, sky_pixels(self._scene, self._chart, first, last))
+
+    def fill(self, name: str, first: int, last: int, out: Pixels) -> None:
+        """Write a layer into a band of the canvas that begins at row `first`."""
+        part, chart = self._part, self._chart
+        begin, end = max(first, part.row), min(last, part.row + chart.height)
+        if begin >= end:
+            return
+        low, high = begin - part.row, end - part.row
+        if part.flip == "rows":
+            low, high = chart.height - high, chart.height - low
+        plane = self.plane(name, low, high)
+        if plane is None:
+            return
+        place = out[begin - first : end - first, part.column : part.column + chart.width]
+        if part.flip == "rows":
+            place = place[::-1]
+        if part.flip == "columns":
+            place = place[:, ::-1]
+        place[plane.first_row : plane.first_row + len(plane.pixels)] = plane.pixels
+
+
+def sky_pixels(scene: Scene, chart: Chart, first: int, last: int) -> Pixels:
+    """Light of the sky and the ground in a chart's rows, without the sun's disc, RGB."""
+    zenith, bearing = chart.angles(first, last)
+    azimuth = bearing - scene.settings.lighting.sun_azimuth
+    footprint = chart.footprints(first, last)
+    pixels = scene.evaluate(zenith, azimuth, footprint)
+    limb = _limb(scene, zenith, footprint)
+    if limb.any():
+        _smooth_limb(scene, zenith, azimuth, footprint, limb, pixels)
+    nowhere = chart.looks_nowhere(first, last)
+    if nowhere is not None:
+        pixels[nowhere] = 0.0
+    return pixels
+
+
+def _limb(scene: Scene, zenith: np.ndarray, footprint: np.ndarray) -> np.ndarray:
+    """Pixels that hold a part of the limb, where the limb is only a few pixels high."""
+    first, last = scene.view.zenith_first, scene.view.zenith_horizon
+    if first == 0.0:
+        return np.zeros(zenith.shape, np.bool_)
+    is_coarse = footprint >= LIMB_COARSE * (last - first)
+    overlaps: np.ndarray = (zenith + 0.5 * footprint > first) & (zenith - 0.5 * footprint < last)
+    return overlaps & is_coarse
+
+
+def _smooth_limb(
+    scene: Scene,
+    zenith: np.ndarray,
+    azimuth: np.ndarray,
+    footprint: np.ndarray,
+    limb: np.ndarray,
+    pixels: Pixels,
+) -> None:
+    """Evaluate pixels at the limb by several samples each.
+
+    Seen from space the air is a thin line; within a pixel it falls from bright to black.
+    """
+    shape = pixels.shape[:2]
+    across = (np.arange(LIMB_SAMPLES) + 0.5) / LIMB_SAMPLES - 0.5
+    height = np.broadcast_to(footprint, zenith.shape)[limb][:, None]
+    fine = zenith[limb][:, None] + height * across
+    if zenith.shape[1] == 1:
+        samples = scene.evaluate(
+            fine.reshape(-1, 1), azimuth, np.repeat(height, LIMB_SAMPLES, 0) / LIMB_SAMPLES
+        )
+        pixels[limb[:, 0]] = samples.reshape(-1, LIMB_SAMPLES, shape[1], 3).mean(axis=1)
+        return
+    around = np.broadcast_to(azimuth, shape)[limb]
+    around = np.broadcast_to(around[:, None], fine.shape)
+    pixels[limb] = scene.evaluate(fine, around, height / LIMB_SAMPLES).mean(axis=1)

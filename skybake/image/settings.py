@@ -1,0 +1,182 @@
+"""What is looked at, what lights it, and how it is stored: all that decides a map but the world."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+from skybake.colour.exposure import luminance_from_ev, luminance_from_units
+from skybake.colour.space import ColourSpace, find_colour_space
+from skybake.errors import InputError
+from skybake.formats.compression import parse_compression
+from skybake.projection import Equirect, Projection, find_projection
+from skybake.sky.sky import METHODS
+
+SUN_DISCS = ("include", "exclude", "only")
+PIXELS = ("auto", "half", "float")
+
+
+@dataclass(frozen=True)
+class View:
+    """Where the observer is and what of the sky around is shown.
+
+    Attributes
+    ----------
+    altitude : float
+        Of the observer above the ground. [km]
+    projection : Projection
+        Kind and size of the map.
+    """
+
+    altitude: float = 0.0
+    projection: Projection = field(default_factory=Equirect)
+
+
+@dataclass(frozen=True)
+class Lighting:
+    """What lights the sky, and what of it is shown.
+
+    Attributes
+    ----------
+    sun_elevation : float
+        Geometric elevation of the sun's centre at the observer. [rad]
+    sun_azimuth : float
+        Compass bearing of the sun: 0 = north, clockwise. [rad]
+    sun_disc : {"include", "exclude", "only"}
+        Whether the map holds the sun's disc, or nothing else.
+    method : {"full", "hillaire", "march"}
+        How light is transported, see `skybake.sky.sky.Sky`.
+    """
+
+    sun_elevation: float = math.radians(30.0)
+    sun_azimuth: float = math.pi
+    sun_disc: str = "include"
+    method: str = "full"
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be baked."""
+        _check_known("sun disc", self.sun_disc, SUN_DISCS)
+        _check_known("method", self.method, METHODS)
+
+
+@dataclass(frozen=True)
+class Encoding:
+    """What the numbers of a map mean and how they are stored.
+
+    Attributes
+    ----------
+    colorspace : str
+        A name of `skybake.colour.space.COLOUR_SPACES`.
+    units : {"ev15", "nits"}
+        What 1.0 stands for: 1.2 * 2**15 cd/m2, or 1 cd/m2.
+    ev : float or None
+        If given, 1.0 stands for 1.2 * 2**ev cd/m2 instead.
+    pixel : {"auto", "half", "float"}
+        Type of stored values; auto takes half where no value is lost in it.
+    compression : str
+        EXR compression, see `skybake.formats.compression`.
+    clamp_negative : bool
+        Set negative values of colours outside the space to 0.
+    """
+
+    colorspace: str = "lin_rec709"
+    units: str = "ev15"
+    ev: float | None = None
+    pixel: str = "auto"
+    compression: str = "zip"
+    clamp_negative: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be stored."""
+        _check_known("pixel", self.pixel, PIXELS)
+        _ = self.space, self.white_luminance, parse_compression(self.compression)
+
+    @property
+    def space(self) -> ColourSpace:
+        """The colour space of the pixels."""
+        return find_colour_space(self.colorspace)
+
+    @property
+    def white_luminance(self) -> float:
+        """Luminance that RGB (1, 1, 1) stands for. [cd m⁻²]"""
+        if self.ev is not None:
+            return luminance_from_ev(self.ev)
+        return luminance_from_units(self.units)
+
+
+@dataclass(frozen=True)
+class MapSettings:
+    """Everything that decides a map but the planet.
+
+    Attributes
+    ----------
+    view : View
+        What is looked at.
+    lighting : Lighting
+        What lights it.
+    encoding : Encoding
+        How it is stored.
+    """
+
+    view: View = field(default_factory=View)
+    lighting: Lighting = field(default_factory=Lighting)
+    encoding: Encoding = field(default_factory=Encoding)
+
+    def recipe(self) -> dict[str, Any]:
+        """All that decides the pixels, in units for people, fit for JSON."""
+        lighting, encoding = self.lighting, self.encoding
+        return {
+            "sun_elevation_deg": math.degrees(lighting.sun_elevation),
+            "sun_azimuth_deg": math.degrees(lighting.sun_azimuth),
+            "altitude_m": self.view.altitude * 1e3,
+            **self.view.projection.recipe(),
+            "colorspace": encoding.colorspace,
+            "white_luminance_cd_m2": encoding.white_luminance,
+            "pixel": encoding.pixel,
+            "compression": encoding.compression,
+            "sun_disc": lighting.sun_disc,
+            "clamp_negative": encoding.clamp_negative,
+            "method": lighting.method,
+        }
+
+
+def map_settings(
+    projection: Projection | str = "equirect",
+    size: tuple[int, ...] | int | None = None,
+    **values: Any,
+) -> MapSettings:
+    """Return the settings of a map from values by name.
+
+    Parameters
+    ----------
+    projection : Projection or str, optional
+        A projection, or a name of `skybake.projection.PROJECTIONS`.
+    size : tuple of int, or int, optional
+        Of a projection that is given by name: width and height, or edge. [pixel]
+    **values
+        Attributes of `View`, `Lighting` and `Encoding`, such as ``sun_elevation=0.1``, and of
+        the named projection, such as ``layout="cross"``.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its range, or there is no such attribute.
+    """
+    parts = {}
+    for name, kind in (("view", View), ("lighting", Lighting), ("encoding", Encoding)):
+        names = {one.name for one in fields(kind)}
+        parts[name] = {key: values.pop(key) for key in names & values.keys()}
+    if isinstance(projection, str):
+        size = (size,) if isinstance(size, int) else size
+        projection = find_projection(projection, size, values)
+    elif size is not None or values:
+        given = sorted({*values, *(() if size is None else ("size",))})
+        raise InputError(f"settings: {', '.join(given)} must be given by the projection itself")
+    view = View(projection=projection, **parts["view"])
+    return MapSettings(view, Lighting(**parts["lighting"]), Encoding(**parts["encoding"]))
+
+
+def _check_known(name: str, value: str, known: tuple[str, ...]) -> None:
+    if value not in known:
+        raise InputError(f"{name}: must be one of {', '.join(known)}, got {value!r}")

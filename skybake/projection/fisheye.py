@@ -1,0 +1,212 @@
+"""Equidistant fisheye pictures, as of domes and all-sky cameras.
+
+Straight up, the picture has south at its bottom, north at its top and east at its left, as one
+sees the sky when lying on the back with the head to the north.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from skybake.errors import InputError
+from skybake.projection.cells import CELLS_PER_RADIUS, Array, Cells, cover, subdivide
+from skybake.projection.chart import Canvas, Chart, Projection, check_edge, size_text, whole
+from skybake.projection.frame import (
+    Frame,
+    check_look,
+    direction,
+    look_frame,
+    look_label,
+    zenith_bearing,
+    zenith_extent,
+)
+
+WIDEST = math.radians(270.0)
+
+
+class FisheyeChart(Chart):
+    """A square whose inscribed circle is the picture; its corners stay black.
+
+    Parameters
+    ----------
+    frame : Frame
+        Where the picture's right, its top and its middle look.
+    fov : float
+        Angle that the circle's diameter covers. [rad]
+    edge : int
+        Width and height. [pixel]
+    """
+
+    def __init__(self, frame: Frame, fov: float, edge: int) -> None:
+        self.width = self.height = edge
+        self._frame, self._fov = frame, fov
+        self._step = fov / edge
+
+    def angles(self, first: int, last: int) -> tuple[Array, Array]:
+        """Directions of the pixels in rows first..last."""
+        return zenith_bearing(self._vectors(*self._plane(first, last)))
+
+    def footprints(self, first: int, last: int) -> Array:
+        """Extents of pixels in zenith angle."""
+        x, y = self._plane(first, last)
+        off_axis = np.hypot(x, y)
+        vectors = self._vectors(x, y)
+        outward, around = self._steps(x, y, off_axis)
+        squeezed = self._step * np.sinc(off_axis / math.pi)
+        return zenith_extent(vectors, self._step * outward, squeezed[..., None] * around)
+
+    def solid_angles(self, first: int, last: int) -> Array:
+        """Solid angles of pixels, 0 outside the circle, shape (row, column). [sr]"""
+        off_axis = np.hypot(*self._plane(first, last))
+        return np.where(off_axis > 0.5 * self._fov, 0.0, self._size(off_axis))
+
+    def looks_nowhere(self, first: int, last: int) -> npt.NDArray[np.bool_]:
+        """Pixels outside the circle."""
+        outside: npt.NDArray[np.bool_] = np.hypot(*self._plane(first, last)) > 0.5 * self._fov
+        return outside
+
+    def disc_cells(self, zenith: float, bearing: float, radius: float) -> Cells:
+        """Cut a disc into cells, each of which adds to the one pixel that it lies in."""
+        centre, edge, step = direction(zenith, bearing), self.width, self._step
+        frame, half = self._frame, 0.5 * self._fov
+        off_axis = math.acos(min(max(float(frame.forward @ centre), -1.0), 1.0))
+        turn = math.atan2(-float(frame.up @ centre), float(frame.right @ centre))
+        x, y = off_axis * math.cos(turn), off_axis * math.sin(turn)
+        # Cells that the edge cuts may have their centres outside it; circles are stretched
+        # around the middle.
+        reach = radius * (1.0 + 2.0 / CELLS_PER_RADIUS)
+        reach /= max(np.sinc(min(off_axis + reach, WIDEST / 2.0) / math.pi), 0.1)
+        (columns, width), (rows, height) = (
+            subdivide(place - reach + half, place + reach + half, step, radius, (0, edge))
+            for place in (x, y)
+        )
+        column, row = (grid.ravel() for grid in np.meshgrid(columns, rows))
+        x_cell, y_cell = column * step - half, row * step - half
+        vectors = self._vectors(x_cell, y_cell)
+        distance = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(vectors - centre, axis=-1), 1.0))
+        size = width * height * np.sinc(np.hypot(x_cell, y_cell) / math.pi)
+        distance, covered = cover(distance, radius, np.sqrt(np.maximum(size, 0.0)), size)
+        texel_row, texel_column = row.astype(np.int64), column.astype(np.int64)
+        off_axis_texel = np.hypot(
+            (texel_column + 0.5) * step - half, (texel_row + 0.5) * step - half
+        )
+        inside = (covered > 0.0) & (off_axis_texel <= half)
+        texel = np.zeros((np.count_nonzero(inside), 4), np.int64)
+        texel[:, 0] = (texel_row * edge + texel_column)[inside]
+        weight = np.zeros(texel.shape)
+        weight[:, 0] = 1.0 / self._size(off_axis_texel[inside])
+        return Cells(
+            zenith=zenith_bearing(vectors[inside])[0],
+            distance=distance[inside],
+            solid_angle=covered[inside],
+            texel=texel,
+            weight=weight,
+        )
+
+    def _plane(self, first: int, last: int) -> tuple[Array, Array]:
+        """Angles from the middle, to the right and down, of the pixels in rows first..last."""
+        half = 0.5 * self._fov
+        column, row = np.arange(self.width) + 0.5, np.arange(first, last)[:, None] + 0.5
+        x, y = np.broadcast_arrays(column * self._step - half, row * self._step - half)
+        return x, y
+
+    def _vectors(self, x: Array, y: Array) -> Array:
+        off_axis = np.hypot(x, y)
+        aside = np.sinc(off_axis / math.pi)[..., None] * self._aside(x, y)
+        vectors: Array = np.cos(off_axis)[..., None] * self._frame.forward + aside
+        return vectors
+
+    def _aside(self, x: Array, y: Array) -> Array:
+        aside: Array = x[..., None] * self._frame.right - y[..., None] * self._frame.up
+        return aside
+
+    def _steps(self, x: Array, y: Array, off_axis: Array) -> tuple[Array, Array]:
+        """Return unit vectors across the line of sight, away from the middle and around it."""
+        at_middle = off_axis == 0.0
+        divisor = np.where(at_middle, 1.0, off_axis)
+        cosine, sine = np.where(at_middle, 1.0, x / divisor), y / divisor
+        radial = self._aside(cosine, sine)
+        along_axis = np.sin(off_axis)[..., None] * self._frame.forward
+        return np.cos(off_axis)[..., None] * radial - along_axis, self._aside(-sine, cosine)
+
+    def _size(self, off_axis: Array) -> Array:
+        size: Array = self._step**2 * np.sinc(off_axis / math.pi)
+        return size
+
+
+@dataclass(frozen=True)
+class Fisheye(Projection):
+    """A round picture in which the distance from the middle is the angle from it.
+
+    Attributes
+    ----------
+    edge : int
+        Width and height of the square around it. [pixel]
+    fov : float
+        Angle that its diameter covers, greater than 0 and at most `WIDEST`. [rad]
+    azimuth, elevation : float
+        Compass bearing and height of its middle. [rad] Straight up, the bearing is that of
+        the picture's bottom.
+    """
+
+    name: ClassVar[str] = "fisheye"
+    edge: int = 1024
+    fov: float = math.pi
+    azimuth: float = math.pi
+    elevation: float = math.pi / 2.0
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be baked."""
+        check_edge(self.edge, smallest=2)
+        if not 0.0 < self.fov <= WIDEST + 1e-9:
+            raise InputError(
+                f"fov: must be greater than 0deg and at most {math.degrees(WIDEST):g}deg for a "
+                f"fisheye picture, got {math.degrees(self.fov):g}deg"
+            )
+        check_look(self.azimuth, self.elevation)
+
+    @classmethod
+    def of_size(cls, size: tuple[int, ...] | None, options: Mapping[str, Any]) -> Self:
+        """Make one of an edge."""
+        if size is None:
+            return cls(**options)
+        if len(set(size)) != 1:
+            raise InputError(f"size: a fisheye picture is square, got {size_text(size)}")
+        return cls(edge=size[0], **options)
+
+    def canvases(self) -> tuple[Canvas, ...]:
+        """Return the one picture."""
+        frame = look_frame(self.azimuth, self.elevation)
+        return (whole(FisheyeChart(frame, self.fov, self.edge)),)
+
+    @property
+    def label(self) -> str:
+        """What the names of files call it."""
+        label = f"{self.name}_fov{math.degrees(self.fov):g}deg"
+        if (self.azimuth, self.elevation) == (math.pi, math.pi / 2.0):
+            return label
+        return f"{label}_{look_label(self.azimuth, self.elevation)}"
+
+    def recipe(self) -> dict[str, Any]:
+        """Size, angle of view and direction."""
+        return {
+            "projection": self.name,
+            "width": self.edge,
+            "fov_deg": math.degrees(self.fov),
+            "look_azimuth_deg": math.degrees(self.azimuth),
+            "look_elevation_deg": math.degrees(self.elevation),
+        }
+
+    def smaller(self, width: int) -> Projection:
+        """Return a picture at most so wide."""
+        return self.glance(min(self.edge, width))
+
+    def glance(self, width: int) -> Projection:
+        """Return the same picture, so wide."""
+        return Fisheye(width, self.fov, self.azimuth, self.elevation)

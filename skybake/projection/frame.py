@@ -1,0 +1,106 @@
+"""Directions and the axes of pictures; +Y up, -Z north, +X east."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from skybake.errors import InputError
+from skybake.projection.cells import Array
+
+
+class Frame(NamedTuple):
+    """Unit vectors of a picture's axes, each of shape (3,).
+
+    Attributes
+    ----------
+    right, up, forward : ndarray of float64
+        Where the picture's right, its top and its middle look.
+    """
+
+    right: Array
+    up: Array
+    forward: Array
+
+
+def look_frame(azimuth: float, elevation: float) -> Frame:
+    """Return the axes of a picture that is held upright.
+
+    Parameters
+    ----------
+    azimuth, elevation : float
+        Compass bearing and height of its middle. [rad] Straight up, the bearing is that of
+        the picture's bottom.
+    """
+    sine, cosine = math.sin(elevation), math.cos(elevation)
+    east, south = math.sin(azimuth), -math.cos(azimuth)
+    return Frame(
+        right=np.array([-south, 0.0, east]),
+        up=np.array([-sine * east, cosine, -sine * south]),
+        forward=np.array([cosine * east, sine, cosine * south]),
+    )
+
+
+def check_look(azimuth: float, elevation: float) -> None:
+    """Refuse what is no direction.
+
+    Raises
+    ------
+    InputError
+        If the elevation is beyond the zenith or the nadir, or a value is not finite.
+    """
+    if not math.isfinite(azimuth):
+        raise InputError(f"look: azimuth must be finite, got {azimuth}")
+    if not abs(elevation) <= math.pi / 2.0 + 1e-9:
+        raise InputError(
+            f"look: elevation must be from -90deg to 90deg, got {math.degrees(elevation):g}deg"
+        )
+
+
+def look_label(azimuth: float, elevation: float) -> str:
+    """Return what the names of files call a direction."""
+    bearing = round(math.degrees(azimuth), 2) % 360.0
+    return f"az{bearing:g}deg_el{math.degrees(elevation):g}deg"
+
+
+def direction(zenith: float, bearing: float) -> Array:
+    """Return the unit vector of a zenith angle and a compass bearing, shape (3,)."""
+    return np.array(
+        [
+            math.sin(zenith) * math.sin(bearing),
+            math.cos(zenith),
+            -math.sin(zenith) * math.cos(bearing),
+        ]
+    )
+
+
+def zenith_bearing(directions: Array) -> tuple[Array, Array]:
+    """Zenith angles and compass bearings of unit vectors, each of shape (...). [rad]"""
+    x, y, z = np.moveaxis(directions, -1, 0)
+    return np.arctan2(np.hypot(x, z), y), np.arctan2(x, -z)
+
+
+def zenith_extent(directions: Array, across: Array, along: Array) -> Array:
+    """Extent of pixels in zenith angle.
+
+    Parameters
+    ----------
+    directions : ndarray of float64, shape (..., 3)
+        Unit vectors of their centres.
+    across, along : ndarray of float64, shape (..., 3)
+        Steps to the neighbours in their row and in their column, across the line of sight. [rad]
+
+    Returns
+    -------
+    ndarray of float64, shape (...)
+        Height of the band of zenith angles that has the same variance as the tilted pixel. [rad]
+    """
+    zenith, bearing = zenith_bearing(directions)
+    cosine = np.cos(zenith)
+    downward = np.stack(
+        [cosine * np.sin(bearing), -np.sin(zenith), -cosine * np.cos(bearing)], axis=-1
+    )
+    extent: Array = np.hypot((across * downward).sum(axis=-1), (along * downward).sum(axis=-1))
+    return extent

@@ -1,0 +1,141 @@
+"""Flat pictures: pixels on a plane before the observer, as of a camera or a cube's face."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from skybake.projection.cells import CELLS_PER_RADIUS, Array, Cells, cover, subdivide
+from skybake.projection.chart import Chart
+from skybake.projection.frame import Frame, direction, zenith_bearing, zenith_extent
+
+
+class GnomonicChart(Chart):
+    """Pixels evenly spaced on a plane at distance 1.
+
+    Parameters
+    ----------
+    frame : Frame
+        Where the picture's right, its top and its middle look.
+    half_width, half_height : float
+        Tangents of half the angles that the picture covers.
+    width, height : int
+        [pixel]
+    """
+
+    def __init__(
+        self, frame: Frame, half_width: float, half_height: float, width: int, height: int
+    ) -> None:
+        self.frame = frame
+        self.width, self.height = width, height
+        self._half_width, self._half_height = half_width, half_height
+
+    def vectors(self, first: int, last: int) -> Array:
+        """Return unit vectors of the pixels in rows first..last, shape (row, column, 3)."""
+        column, row = np.arange(self.width), np.arange(first, last)[:, None]
+        return self._vectors(*np.broadcast_arrays(*self._plane(column + 0.5, row + 0.5)))
+
+    def angles(self, first: int, last: int) -> tuple[Array, Array]:
+        """Directions of the pixels in rows first..last."""
+        return zenith_bearing(self.vectors(first, last))
+
+    def footprints(self, first: int, last: int) -> Array:
+        """Extents of pixels in zenith angle."""
+        vectors = self.vectors(first, last)
+        u, v = self._plane(np.arange(self.width) + 0.5, np.arange(first, last)[:, None] + 0.5)
+        nearer = 1.0 / np.sqrt(1.0 + u * u + v * v)
+        right, up = self.frame.right, self.frame.up
+        across = 2.0 * self._half_width / self.width * nearer
+        along = 2.0 * self._half_height / self.height * nearer
+        return zenith_extent(vectors, across[..., None] * right, along[..., None] * up)
+
+    def solid_angles(self, first: int, last: int) -> Array:
+        """Solid angles of pixels, shape (row, column). [sr]"""
+        return self._solid_angles(np.arange(first, last)[:, None], np.arange(self.width))
+
+    def disc_cells(self, zenith: float, bearing: float, radius: float) -> Cells:
+        """Cut a disc into cells, each of which adds to the one pixel that it lies in."""
+        frame, width, height = self.frame, self.width, self.height
+        centre = direction(zenith, bearing)
+        # Cells that the edge cuts may have their centres outside it.
+        reach = radius * (1.0 + 2.0 / CELLS_PER_RADIUS)
+        bounds = self._disc_bounds(
+            float(frame.right @ centre),
+            float(frame.up @ centre),
+            float(frame.forward @ centre),
+            reach,
+        )
+        (left, right), (top, bottom) = bounds
+        half_width, half_height = self._half_width, self._half_height
+        columns, cell_width = subdivide(
+            left + half_width, right + half_width, 2.0 * half_width / width, radius, (0, width)
+        )
+        rows, cell_height = subdivide(
+            top + half_height, bottom + half_height, 2.0 * half_height / height, radius, (0, height)
+        )
+        column, row = (grid.ravel() for grid in np.meshgrid(columns, rows))
+        u, v = self._plane(column, row)
+        vectors = self._vectors(u, v)
+        distance = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(vectors - centre, axis=-1), 1.0))
+        size = cell_width * cell_height / (1.0 + u * u + v * v) ** 1.5
+        distance, covered = cover(distance, radius, np.sqrt(size), size)
+        inside = covered > 0.0
+        texel = np.zeros((np.count_nonzero(inside), 4), np.int64)
+        texel[:, 0] = row[inside].astype(np.int64) * width + column[inside].astype(np.int64)
+        weight = np.zeros(texel.shape)
+        weight[:, 0] = 1.0 / self._solid_angles(*np.divmod(texel[:, 0], width))
+        return Cells(
+            zenith=zenith_bearing(vectors[inside])[0],
+            distance=distance[inside],
+            solid_angle=covered[inside],
+            texel=texel,
+            weight=weight,
+        )
+
+    def _plane(self, column: npt.NDArray[Any], row: npt.NDArray[Any]) -> tuple[Array, Array]:
+        """Places on the plane, right and down of its middle, given in pixels."""
+        return (
+            2.0 * self._half_width * column / self.width - self._half_width,
+            2.0 * self._half_height * row / self.height - self._half_height,
+        )
+
+    def _vectors(self, u: Array, v: Array) -> Array:
+        frame = self.frame
+        vectors = frame.forward + u[..., None] * frame.right - v[..., None] * frame.up
+        unit: Array = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+        return unit
+
+    def _solid_angles(self, row: npt.NDArray[np.int64], column: npt.NDArray[np.int64]) -> Array:
+        u, v = self._plane(column, row)
+        width = 2.0 * self._half_width / self.width
+        height = 2.0 * self._half_height / self.height
+        size: Array = (
+            _corner_solid_angle(u + width, v + height)
+            - _corner_solid_angle(u, v + height)
+            - _corner_solid_angle(u + width, v)
+            + _corner_solid_angle(u, v)
+        )
+        return size
+
+    def _disc_bounds(
+        self, x: float, y: float, z: float, radius: float
+    ) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Ranges of u and v that hold a disc around (x, y, z); empty if the picture misses it."""
+        nowhere = (2.0 * self._half_width,) * 2, (2.0 * self._half_height,) * 2
+        corner = math.atan(math.hypot(self._half_width, self._half_height))
+        if z < math.cos(min(corner + radius, math.pi / 2.0 - radius)):
+            return nowhere
+        from_middle = math.acos(min(z, 1.0))
+        stretched = math.tan(radius) * (1.0 + (x * x + y * y) / (z * z)) * 1.1
+        outward = math.tan(min(from_middle + radius, math.pi / 2.0 - 1e-3)) - math.tan(from_middle)
+        reach = max(stretched, outward)
+        return (x / z - reach, x / z + reach), (-y / z - reach, -y / z + reach)
+
+
+def _corner_solid_angle(u: Array, v: Array) -> Array:
+    """Solid angle of the rectangle from the middle of the plane to a corner, with its sign. [sr]"""
+    area: Array = np.arctan2(u * v, np.sqrt(u * u + v * v + 1.0))
+    return area

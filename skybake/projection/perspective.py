@@ -1,0 +1,94 @@
+"""Pictures as a camera without distortion takes them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
+
+from skybake.errors import InputError
+from skybake.projection.chart import Canvas, Projection, check_edge, size_text, whole
+from skybake.projection.frame import check_look, look_frame, look_label
+from skybake.projection.gnomonic import GnomonicChart
+
+WIDEST = math.radians(170.0)
+LARGEST_PREVIEW = 1920
+
+
+@dataclass(frozen=True)
+class Perspective(Projection):
+    """A flat picture, held upright.
+
+    Attributes
+    ----------
+    width, height : int
+        [pixel]
+    fov : float
+        Angle that the width covers, greater than 0 and at most `WIDEST`. [rad]
+    azimuth, elevation : float
+        Compass bearing and height of the middle. [rad]
+    """
+
+    name: ClassVar[str] = "perspective"
+    width: int = 1920
+    height: int = 1080
+    fov: float = math.radians(50.0)
+    azimuth: float = math.pi
+    elevation: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be baked."""
+        check_edge(self.width)
+        check_edge(self.height)
+        if not 0.0 < self.fov <= WIDEST + 1e-9:
+            raise InputError(
+                f"fov: must be greater than 0deg and at most {math.degrees(WIDEST):g}deg for a "
+                f"perspective picture, got {math.degrees(self.fov):g}deg"
+            )
+        check_look(self.azimuth, self.elevation)
+
+    @classmethod
+    def of_size(cls, size: tuple[int, ...] | None, options: Mapping[str, Any]) -> Self:
+        """Make one of a width and a height."""
+        if size is None:
+            return cls(**options)
+        if len(size) != 2:
+            raise InputError(
+                f"size: a perspective picture needs width and height, got {size_text(size)}"
+            )
+        return cls(width=size[0], height=size[1], **options)
+
+    def canvases(self) -> tuple[Canvas, ...]:
+        """Return the one picture."""
+        frame = look_frame(self.azimuth, self.elevation)
+        half_width = math.tan(0.5 * self.fov)
+        half_height = half_width * self.height / self.width
+        return (whole(GnomonicChart(frame, half_width, half_height, self.width, self.height)),)
+
+    @property
+    def label(self) -> str:
+        """What the names of files call it."""
+        look = look_label(self.azimuth, self.elevation)
+        return f"{self.name}_{look}_fov{math.degrees(self.fov):g}deg"
+
+    def recipe(self) -> dict[str, Any]:
+        """Size, angle of view and direction."""
+        return {
+            "projection": self.name,
+            "width": self.width,
+            "height": self.height,
+            "fov_deg": math.degrees(self.fov),
+            "look_azimuth_deg": math.degrees(self.azimuth),
+            "look_elevation_deg": math.degrees(self.elevation),
+        }
+
+    def smaller(self, width: int) -> Projection:
+        """Return the same picture, which is looked at in its own size up to full HD."""
+        largest = max(width, LARGEST_PREVIEW)
+        return self if self.width <= largest else self.glance(largest)
+
+    def glance(self, width: int) -> Projection:
+        """Return the same picture, so wide."""
+        height = max(1, round(self.height * width / self.width))
+        return Perspective(width, height, self.fov, self.azimuth, self.elevation)
