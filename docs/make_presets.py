@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
-from skybake.baking.figures import derive_figures
+from skybake.inspect.summary import summarise
 from skybake.preset import load_preset, preset_names
 from skybake.preset.constituents import GASES
 from skybake.preset.tables import table_columns
@@ -18,7 +18,7 @@ _PART = r"(<!-- {name}: written by docs/make_presets\.py -->\n).*?(<!-- end -->)
 
 
 def presets_table() -> str:
-    """Names, titles and figures of the presets."""
+    """Names, titles and summary of the presets."""
     return _table(
         ("preset", "what it is", "optical depth", "visibility [km]", "sun [klx]", "its disc [deg]"),
         (_preset_row(name) for name in preset_names()),
@@ -27,15 +27,15 @@ def presets_table() -> str:
 
 def _preset_row(name: str) -> tuple[str, ...]:
     planet = load_preset(name)
-    figures = derive_figures(planet)
-    green = int(abs(figures.wavelengths - 550.0).argmin())
+    summary = summarise(planet)
+    green = int(abs(summary.wavelengths - 550.0).argmin())
     return (
         f"`{name}`",
         planet.title,
-        f"{figures.constituents[-1].optical_depth[green]:.3g}",
-        "" if figures.visibility is None else f"{figures.visibility:.3g}",
-        f"{figures.sun_illuminance / 1e3:.4g}",
-        f"{math.degrees(figures.sun_angular_diameter):.3g}",
+        f"{summary.constituents[-1].optical_depth[green]:.3g}",
+        "" if summary.visibility is None else f"{summary.visibility:.3g}",
+        f"{summary.sun_illuminance / 1e3:.4g}",
+        f"{math.degrees(summary.sun_angular_diameter):.3g}",
     )
 
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import skybake
-from skybake.baking.probe import Directions, probe
 from skybake.formats.reader import read_image
 from skybake.image.scene import Scene, luminous_weights
+from skybake.inspect.probe import Directions, probe
 from skybake.preset import load_preset
 from skybake.sky.sky import Sky
 from skybake.sky.view import horizon_angles

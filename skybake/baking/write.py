@@ -13,15 +13,14 @@ from typing import Literal
 import numpy as np
 
 from skybake.baking.paths import default_path, map_paths
-from skybake.baking.preview import SURVEY_ROWS
-from skybake.baking.recipe import preview_texts, recipe_attributes
-from skybake.baking.show import scene_ev, show_scene
 from skybake.formats.preview import check_preview, open_preview
 from skybake.formats.scanlines import Rows
 from skybake.formats.spec import Attribute, MapSpec
 from skybake.formats.writer import MapWriter, check_map_path, open_maps
 from skybake.image.light import Light, attributes_from_light, light_of_scene
+from skybake.image.picture import SURVEY_ROWS, scene_ev, show_scene
 from skybake.image.raster import Raster
+from skybake.image.recipe import preview_texts, recipe_attributes
 from skybake.image.scene import Scene
 from skybake.image.settings import MapSettings
 from skybake.jit.workers import Workers

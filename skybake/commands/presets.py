@@ -74,14 +74,14 @@ def check(name: str, **options: Any) -> None:
     try:
         planet = load_world(name, options)
 
-        from skybake.baking.figures import derive_figures, figures_text
+        from skybake.inspect.summary import summarise, summary_text
 
-        figures = derive_figures(planet)
+        summary = summarise(planet)
     except PresetError as error:
         for fault in error.faults:
             click.echo(f"skybake: {' '.join(fault.split())}", err=True)
         raise click.exceptions.Exit(1) from error
-    click.echo(figures_text(planet, figures))
+    click.echo(summary_text(planet, summary))
 
 
 @presets.command()
@@ -142,7 +142,7 @@ def plot(name: str, output: Path | None, **options: Any) -> None:
     planet = load_world(name, options)
     try:
         from skybake.baking.paths import world_name
-        from skybake.baking.plot import plot_planet
+        from skybake.inspect.plot import plot_planet
     except ImportError as error:
         raise InputError("plot: needs matplotlib, as from pip install 'skybake[plot]'") from error
     output = output or Path(f"{world_name(planet)}.png")

@@ -84,8 +84,8 @@ def probe(**options: Any) -> None:
 
     import numpy as np
 
-    from skybake.baking.probe import default_directions, probe, read_directions
     from skybake.formats.partial import replace_when_whole
+    from skybake.inspect.probe import default_directions, probe, read_directions
 
     planet = world.load_world(options["preset"], options)
     source: Path | None = options["directions"]

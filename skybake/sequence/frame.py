@@ -13,14 +13,14 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.baking.paths import map_paths
-from skybake.baking.recipe import HASH_ATTRIBUTE, preview_texts, recipe_hash
-from skybake.baking.show import scene_ev, thumbnail
 from skybake.baking.write import bake_scene
 from skybake.colour.exposure import ev_from_luminance
 from skybake.errors import InputError
 from skybake.formats.partial import remove_leftovers
 from skybake.formats.reader import read_whole_attributes
 from skybake.image.light import Light, attributes_from_light, light_from_attributes
+from skybake.image.picture import scene_ev, thumbnail
+from skybake.image.recipe import HASH_ATTRIBUTE, preview_texts, recipe_hash
 from skybake.image.scene import Scene
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.preset import Planet

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
-from skybake.baking.show import scene_ev
 from skybake.errors import SkybakeError
+from skybake.image.picture import scene_ev
 from skybake.image.scene import Scene
 from skybake.sequence.frame import Outcome
 from skybake.sequence.plan import Frame, Plan

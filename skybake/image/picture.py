@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from skybake.baking.preview import SURVEY_ROWS
 from skybake.colour.exposure import auto_ev, luminance_from_ev
 from skybake.formats.preview import Show, display_values
 from skybake.image.raster import Raster
@@ -13,6 +12,9 @@ from skybake.image.scene import Scene
 from skybake.projection import Projection
 
 PREVIEW_WIDTH = 1024
+
+SURVEY_ROWS = 256
+"""Rows of an equirect map by which the light of a scene is judged."""
 
 
 def scene_ev(scene: Scene) -> float:

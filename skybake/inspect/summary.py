@@ -1,4 +1,4 @@
-"""Figures of a planet by which a physicist judges whether it is as it was meant."""
+"""Derived figures of a planet, by which a physicist judges whether it is as it was meant."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ from skybake.scattering.grid import ORDER
 from skybake.scattering.solver import MAX_DEPTH, check_depth
 from skybake.sky.sky import WAVELENGTHS
 
-FIGURE_WAVELENGTHS = (450.0, 550.0, 650.0)
-"""Where optical depths are told. [nm]"""
+SUMMARY_WAVELENGTHS = (450.0, 550.0, 650.0)
+"""Where optical depths are reported. [nm]"""
 
 
 @dataclass(frozen=True)
-class ConstituentFigures:
+class ConstituentSummary:
     """What one constituent, or all together, does to light on the vertical.
 
     Attributes
@@ -50,14 +50,14 @@ class ConstituentFigures:
 
 
 @dataclass(frozen=True)
-class Figures:
+class Summary:
     """Derived figures of a planet.
 
     Attributes
     ----------
     wavelengths : ndarray of float64, shape (wavelength,)
-        `FIGURE_WAVELENGTHS`, as far as the preset reaches. [nm]
-    constituents : tuple of ConstituentFigures
+        `SUMMARY_WAVELENGTHS`, as far as the preset reaches. [nm]
+    constituents : tuple of ConstituentSummary
         In the preset's order, the total last.
     ground_albedo : ndarray of float64, shape (wavelength,)
         In [0, 1].
@@ -72,7 +72,7 @@ class Figures:
     """
 
     wavelengths: Array
-    constituents: tuple[ConstituentFigures, ...]
+    constituents: tuple[ConstituentSummary, ...]
     ground_albedo: Array
     visibility: float | None
     turbidity: float | None
@@ -81,8 +81,8 @@ class Figures:
     refusal: str | None
 
 
-def derive_figures(planet: Planet) -> Figures:
-    """Derive the figures of a planet, whose optics are thereby checked as for a rendering.
+def summarise(planet: Planet) -> Summary:
+    """Derive figures of a planet, whose optics are thereby checked as for a rendering.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def derive_figures(planet: Planet) -> Figures:
     """
     whole = _try_all(planet)
     own = planet.wavelengths or tuple(WAVELENGTHS)
-    wavelengths = np.unique(np.clip(FIGURE_WAVELENGTHS, min(own), max(own)))
+    wavelengths = np.unique(np.clip(SUMMARY_WAVELENGTHS, min(own), max(own)))
     medium = build_medium(planet, wavelengths)
     depth = vertical_optical_depth(medium)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -100,12 +100,12 @@ def derive_figures(planet: Planet) -> Figures:
     altitude = altitude_nodes(medium.r_bottom, medium.r_top)
     columns = np.asarray(np.trapezoid(medium.density, altitude, axis=0))
     rows = [
-        ConstituentFigures(one.name, depth[i], albedo[i], _column(one, float(columns[i])))
+        ConstituentSummary(one.name, depth[i], albedo[i], _column(one, float(columns[i])))
         for i, one in enumerate(planet.constituents)
     ]
-    rows.append(ConstituentFigures("total", depth.sum(axis=0), total_albedo))
+    rows.append(ConstituentSummary("total", depth.sum(axis=0), total_albedo))
     sees_haze = min(own) <= HAZE_WAVELENGTH <= max(own)
-    return Figures(
+    return Summary(
         wavelengths=wavelengths,
         constituents=tuple(rows),
         ground_albedo=medium.ground_albedo,
@@ -149,10 +149,10 @@ def _column(constituent: object, length: float) -> float | None:
     return constituent.column if isinstance(constituent, Absorber) else None
 
 
-def figures_text(planet: Planet, figures: Figures) -> str:
-    """Figures for people, in lines."""
-    width = max(len(one.name) for one in figures.constituents)
-    band = "".join(f"{wavelength:>9g}" for wavelength in figures.wavelengths)
+def summary_text(planet: Planet, summary: Summary) -> str:
+    """Summary for people, in lines."""
+    width = max(len(one.name) for one in summary.constituents)
+    band = "".join(f"{wavelength:>9g}" for wavelength in summary.wavelengths)
     gap = " " * max(0, len(band) - len("optical depth") - 2)
     lines = [
         f"{planet.name}: {planet.title}",
@@ -160,7 +160,7 @@ def figures_text(planet: Planet, figures: Figures) -> str:
         f"{'':{width}}  optical depth{gap}   single scattering albedo",
         f"{'nm':{width}}{band}  {band}",
     ]
-    for one in figures.constituents:
+    for one in summary.constituents:
         depth = "".join(f"{value:>9.4g}" for value in one.optical_depth)
         albedo = "".join(
             f"{'-' if math.isnan(value) else f'{value:.4f}':>9}"
@@ -170,24 +170,24 @@ def figures_text(planet: Planet, figures: Figures) -> str:
     lines.append("")
     lines += [
         f"column of {one.name}: {one.column:.4g} molecules/m2, {one.column / DOBSON_UNIT:.4g} DU"
-        for one in figures.constituents
+        for one in summary.constituents
         if one.column is not None
     ]
-    if figures.visibility is not None:
-        lines.append(f"visibility: {figures.visibility:.4g} km at the ground, 550 nm")
-    if figures.turbidity is not None:
-        lines.append(f"turbidity: {figures.turbidity:.4g} at 550 nm")
+    if summary.visibility is not None:
+        lines.append(f"visibility: {summary.visibility:.4g} km at the ground, 550 nm")
+    if summary.turbidity is not None:
+        lines.append(f"turbidity: {summary.turbidity:.4g} at 550 nm")
     albedo = ", ".join(
         f"{value:.4g} at {wavelength:g} nm"
-        for value, wavelength in zip(figures.ground_albedo, figures.wavelengths, strict=True)
+        for value, wavelength in zip(summary.ground_albedo, summary.wavelengths, strict=True)
     )
     lines += [
         f"ground albedo: {albedo}",
-        f"sun above the atmosphere: {figures.sun_illuminance:.4g} lx",
-        f"sun's disc: {math.degrees(figures.sun_angular_diameter):.4g}deg across",
+        f"sun above the atmosphere: {summary.sun_illuminance:.4g} lx",
+        f"sun's disc: {math.degrees(summary.sun_angular_diameter):.4g}deg across",
     ]
-    if figures.refusal is not None:
-        lines.append(f"will not render: {figures.refusal}")
+    if summary.refusal is not None:
+        lines.append(f"will not render: {summary.refusal}")
     if planet.data_quality:
         lines.append(f"data quality: {' '.join(planet.data_quality.split())}")
     return "\n".join(lines)

@@ -1,25 +1,25 @@
-"""Figures of a planet, against what is published of it."""
+"""Derived figures of a planet, against what is published of it."""
 
 import math
 
 import numpy as np
 import pytest
 
-from skybake.baking.figures import derive_figures, figures_text
 from skybake.errors import InputError, PresetError
+from skybake.inspect.summary import summarise, summary_text
 from skybake.optics.medium import build_medium
 from skybake.preset import load_preset, preset_names
 from skybake.scattering.atmosphere import build_atmosphere
 from skybake.sky.sky import WAVELENGTHS
 
 
-def constituents(figures):
-    return {one.name: one for one in figures.constituents}
+def constituents(summary):
+    return {one.name: one for one in summary.constituents}
 
 
 @pytest.fixture(scope="module")
 def earth():
-    return derive_figures(load_preset("earth"))
+    return summarise(load_preset("earth"))
 
 
 def test_the_sun_above_the_atmosphere_has_133_kilolux_and_half_a_degree(earth):
@@ -53,10 +53,10 @@ def test_the_total_is_the_sum_and_its_albedo_the_mean_by_extinction(earth):
 
 def test_an_empty_constituent_has_no_albedo_and_is_told_without_nan():
     planet = load_preset("earth", {"aerosol.optical_depth": 0, "ozone.column_du": 0})
-    figures = derive_figures(planet)
-    assert np.isnan(constituents(figures)["ozone"].single_scattering_albedo).all()
-    np.testing.assert_array_equal(figures.constituents[-1].single_scattering_albedo, 1.0)
-    text = figures_text(planet, figures)
+    summary = summarise(planet)
+    assert np.isnan(constituents(summary)["ozone"].single_scattering_albedo).all()
+    np.testing.assert_array_equal(summary.constituents[-1].single_scattering_albedo, 1.0)
+    text = summary_text(planet, summary)
     assert "nan" not in text
     assert len(text.splitlines()) == 16
 
@@ -65,9 +65,9 @@ def test_an_empty_constituent_has_no_albedo_and_is_told_without_nan():
 def test_air_is_called_too_thick_where_the_solver_refuses_it(depth, refused):
     """Dust of depth 33 has 28 without its forward peak."""
     planet = load_preset("mars", {"dust.optical_depth": depth})
-    figures = derive_figures(planet)
+    summary = summarise(planet)
     assert (figures.refusal is not None) == refused
-    lines = figures_text(planet, figures).splitlines()
+    lines = summary_text(planet, summary).splitlines()
     told = [line for line in lines if line.startswith("will not render: ")]
     assert told == ([f"will not render: {figures.refusal}"] if refused else [])
     if refused:
@@ -78,9 +78,9 @@ def test_air_is_called_too_thick_where_the_solver_refuses_it(depth, refused):
 
 def test_wavelengths_stay_within_those_of_the_preset():
     narrow = {"wavelengths_nm": [600, 500, 470]}
-    figures = derive_figures(load_preset("earth", narrow))
+    figures = summarise(load_preset("earth", narrow))
     assert figures.wavelengths.tolist() == [470.0, 550.0, 600.0]
-    figures = derive_figures(load_preset("earth", {"wavelengths_nm": [600, 590, 580]}))
+    figures = summarise(load_preset("earth", {"wavelengths_nm": [600, 590, 580]}))
     assert figures.wavelengths.tolist() == [580.0, 600.0]
     assert figures.visibility is None
 
@@ -88,13 +88,13 @@ def test_wavelengths_stay_within_those_of_the_preset():
 def test_what_no_table_of_altitudes_resolves_is_refused():
     thin = {"aerosol.profile": {"kind": "tent", "center_km": 90.05, "half_width_km": 0.001}}
     with pytest.raises(PresetError, match=r"aerosol\.profile: must be thicker than 0\.2 km"):
-        derive_figures(load_preset("earth", thin))
+        summarise(load_preset("earth", thin))
 
 
 @pytest.mark.parametrize("name", preset_names())
 def test_the_figures_of_every_preset_are_told_in_lines_of_numbers(name):
     planet = load_preset(name)
-    text = figures_text(planet, derive_figures(planet))
+    text = summary_text(planet, summarise(planet))
     assert text.startswith(f"{name}: {planet.title}\n")
     assert "nan" not in text
     assert "inf" not in text.lower().replace("infra", "")
