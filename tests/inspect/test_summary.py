@@ -66,14 +66,14 @@ def test_air_is_called_too_thick_where_the_solver_refuses_it(depth, refused):
     """Dust of depth 33 has 28 without its forward peak."""
     planet = load_preset("mars", {"dust.optical_depth": depth})
     summary = summarise(planet)
-    assert (figures.refusal is not None) == refused
+    assert (summary.refusal is not None) == refused
     lines = summary_text(planet, summary).splitlines()
     told = [line for line in lines if line.startswith("will not render: ")]
-    assert told == ([f"will not render: {figures.refusal}"] if refused else [])
+    assert told == ([f"will not render: {summary.refusal}"] if refused else [])
     if refused:
         with pytest.raises(InputError) as caught:
             build_atmosphere(build_medium(planet, WAVELENGTHS), "full")
-        assert str(caught.value) == figures.refusal
+        assert str(caught.value) == summary.refusal
 
 
 def test_wavelengths_stay_within_those_of_the_preset():
