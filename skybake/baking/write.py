@@ -18,7 +18,7 @@ from skybake.formats.scanlines import Rows
 from skybake.formats.spec import Attribute, MapSpec
 from skybake.formats.writer import MapWriter, check_map_path, open_maps
 from skybake.image.light import Light, attributes_from_light, light_of_scene
-from skybake.image.picture import SURVEY_ROWS, scene_ev, show_scene
+from skybake.image.picture import PREVIEW_WIDTH, SURVEY_ROWS, scene_ev, show_scene
 from skybake.image.raster import Raster
 from skybake.image.recipe import preview_texts, recipe_attributes
 from skybake.image.scene import Scene
@@ -188,7 +188,10 @@ def bake_scene(
         if preview is not None:
             preview_ev = scene_ev(scene) if preview_ev is None else preview_ev
             texts = preview_texts(planet, settings, preview_ev, preview_view)
-            show = stack.enter_context(open_preview(preview, view=preview_view, texts=texts))
+            small = settings.view.projection.smaller(PREVIEW_WIDTH).canvases()[0]
+            show = stack.enter_context(
+                open_preview(preview, view=preview_view, max_width=small.width, texts=texts)
+            )
             draw = partial(show_scene, scene, show, preview_ev)
         writers = stack.enter_context(open_maps(specs))
         _write(rasters, writers, scene.workers, progress)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -179,3 +180,11 @@ def _shrink(pixels: npt.NDArray[np.float32], max_width: int) -> npt.NDArray[np.f
 
 def _pixels(image: OpenImageIO.ImageBuf) -> npt.NDArray[np.float32]:
     return np.asarray(image.get_pixels(OpenImageIO.FLOAT), np.float32)
+
+
+def png_bytes(pixels: npt.NDArray[np.uint8]) -> bytes:
+    """Return the content of a PNG file of code values of sRGB, shape (row, column, 3)."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "picture.png"
+        _write_png(path, path, np.ascontiguousarray(pixels))
+        return path.read_bytes()

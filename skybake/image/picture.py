@@ -1,52 +1,92 @@
-"""Display-referred pictures of scenes, which need no file of the map."""
+"""Display-referred pictures of scenes and images, which need no file of the map."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 
 from skybake.colour.exposure import auto_ev, luminance_from_ev
 from skybake.formats.preview import Show, display_values
+from skybake.image.layers import Pixels
 from skybake.image.raster import Raster
 from skybake.image.scene import Scene
+from skybake.image.settings import Encoding
 from skybake.projection import Projection
+from skybake.projection.chart import Canvas
 
 PREVIEW_WIDTH = 1024
 
 SURVEY_ROWS = 256
 """Rows of an equirect map by which the light of a scene is judged."""
 
+CodeValues = npt.NDArray[np.uint8]
+
 
 def scene_ev(scene: Scene) -> float:
     """Exposure value at which a scene is legible, whatever the size of the map."""
-    (canvas,) = scene.settings.view.projection.glance(2 * SURVEY_ROWS).canvases()
-    (part,) = canvas.parts
-    luminance = Raster(scene, canvas).rows(0, canvas.height) @ scene.luminance
-    zenith, _ = part.chart.angles(0, canvas.height)
-    weights = part.chart.solid_angles(0, canvas.height)
-    return auto_ev(np.maximum(luminance, 0.0), weights, zenith <= np.pi / 2.0)
+    projection = scene.settings.view.projection.glance(2 * SURVEY_ROWS)
+    canvases = projection.canvases()
+    return canvases_ev(canvases, [_rows(scene, canvas) for canvas in canvases], scene.luminance)
+
+
+def canvases_ev(
+    canvases: Sequence[Canvas], pixels: Sequence[Pixels], luminance: npt.NDArray[np.float64]
+) -> float:
+    """Exposure value at which the pictures of a map are legible.
+
+    Parameters
+    ----------
+    canvases : sequence of Canvas
+        Each of a single chart.
+    pixels : sequence of ndarray of float32, shape (row, column, 3)
+        What they hold, scene-linear.
+    luminance : ndarray of float64, shape (3,)
+        Luminances of red, green and blue. [cd m⁻²]
+    """
+    values, weights, above = [], [], []
+    for canvas, rows in zip(canvases, pixels, strict=True):
+        (part,) = canvas.parts
+        shape = rows.shape[:2]
+        zenith, _ = part.chart.angles(0, canvas.height)
+        size = part.chart.solid_angles(0, canvas.height)
+        values.append(np.maximum(rows @ luminance, 0.0).ravel())
+        weights.append(np.broadcast_to(size, shape).ravel())
+        above.append(np.broadcast_to(zenith <= np.pi / 2.0, shape).ravel())
+    return auto_ev(*(np.concatenate(each) for each in (values, weights, above)))
 
 
 def show_scene(scene: Scene, show: Show, ev: float) -> None:
     """Make the preview of a scene, in the map's own projection."""
-    pixels = _pixels(scene, scene.settings.view.projection.smaller(PREVIEW_WIDTH))
-    show(pixels, scene.settings.encoding.space, _gain(scene, ev))
+    pixels = _single(scene, scene.settings.view.projection.smaller(PREVIEW_WIDTH))
+    show(pixels, scene.settings.encoding.space, gain(scene.settings.encoding, ev))
 
 
-def thumbnail(scene: Scene, ev: float, view: str, width: int) -> npt.NDArray[np.uint8]:
+def thumbnail(scene: Scene, ev: float, view: str, width: int) -> CodeValues:
     """Picture of a scene, so wide, code values of sRGB; an equirect map of the whole sphere."""
-    glance = _pixels(scene, scene.settings.view.projection.glance(width))
-    exposed = glance * np.float32(_gain(scene, ev))
-    values = display_values(exposed, scene.settings.encoding.space, view)
-    code_values: npt.NDArray[np.uint8] = np.rint(values * 255.0).astype(np.uint8)
-    return code_values
+    glance = _single(scene, scene.settings.view.projection.glance(width))
+    return code_values(glance, scene.settings.encoding, ev, view)
 
 
-def _pixels(scene: Scene, projection: Projection) -> npt.NDArray[np.float32]:
+def code_values(pixels: Pixels, encoding: Encoding, ev: float, view: str) -> CodeValues:
+    """Code values of sRGB of scene-linear pixels, shape (row, column, 3)."""
+    exposed = pixels * np.float32(gain(encoding, ev))
+    values = display_values(exposed, encoding.space, view)
+    shown: CodeValues = np.rint(values * 255.0).astype(np.uint8)
+    return shown
+
+
+def gain(encoding: Encoding, ev: float) -> float:
+    """Factor from pixels to the scene-linear values of ACES at an exposure value."""
+    return encoding.white_luminance / luminance_from_ev(ev)
+
+
+def _single(scene: Scene, projection: Projection) -> Pixels:
     """Light of a scene in the one picture of a projection."""
     (canvas,) = projection.canvases()
+    return _rows(scene, canvas)
+
+
+def _rows(scene: Scene, canvas: Canvas) -> Pixels:
     return Raster(scene, canvas).rows(0, canvas.height)
-
-
-def _gain(scene: Scene, ev: float) -> float:
-    return scene.settings.encoding.white_luminance / luminance_from_ev(ev)

@@ -1,0 +1,141 @@
+"""A map in memory: pixels with what they mean."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from skybake.colour.space import luminance_weights
+from skybake.formats.preview import png_bytes
+from skybake.image.layers import Pixels
+from skybake.image.light import Light, attributes_from_light, light_of_scene
+from skybake.image.picture import PREVIEW_WIDTH, CodeValues, canvases_ev, code_values
+from skybake.image.raster import Raster
+from skybake.image.recipe import recipe_attributes
+from skybake.image.scene import Scene
+from skybake.image.settings import Encoding
+from skybake.projection import Projection
+from skybake.projection.cubemap import CROSS_ORIGINS, FACES
+
+BAND_ROWS = 128
+
+
+@dataclass(frozen=True, eq=False)
+class Image:
+    """A map, or another picture of a sky.
+
+    Attributes
+    ----------
+    pixels : ndarray of float32, shape (row, column, 3) or (face, row, column, 3)
+        Linear and scene-referred. Row 0 looks up; of a cubemap in six pictures the faces
+        come in the order +X -X +Y -Y +Z -Z.
+    projection : Projection
+        Where pixels look.
+    encoding : Encoding
+        What the numbers mean.
+    light : Light
+        Directions and illuminances.
+    metadata : mapping of str to Any
+        What the file of the map would say, see docs/formats.md.
+    """
+
+    pixels: Pixels
+    projection: Projection
+    encoding: Encoding
+    light: Light
+    metadata: Mapping[str, Any]
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
+        """Return the pixels, so that `numpy.asarray` of the image is what one expects."""
+        return np.array(self.pixels, dtype=dtype, copy=copy)
+
+    def legible_ev(self) -> float:
+        """Exposure value at which the picture is legible."""
+        encoding = self.encoding
+        luminance = luminance_weights(encoding.space) * encoding.white_luminance
+        canvases = self.projection.canvases()
+        return canvases_ev(canvases, self._pictures(), luminance)
+
+    def picture(self, ev: float | None = None, view: str = "aces2") -> CodeValues:
+        """Return the image as a screen shows it.
+
+        Parameters
+        ----------
+        ev : float, optional
+            Exposure value at ISO 100; by default a legible one.
+        view : {"aces2", "aces1"}, optional
+            Display transform.
+
+        Returns
+        -------
+        ndarray of uint8, shape (row, column, 3)
+            Code values of sRGB; six faces lie in a cross.
+        """
+        ev = self.legible_ev() if ev is None else ev
+        return code_values(self._joined(), self.encoding, ev, view)
+
+    def _repr_png_(self) -> bytes:
+        """Return what a notebook shows."""
+        picture = self.picture()
+        step = -(-picture.shape[1] // PREVIEW_WIDTH)
+        return png_bytes(picture[step // 2 :: step, step // 2 :: step])
+
+    def _pictures(self) -> list[Pixels]:
+        return [self.pixels] if self.pixels.ndim == 3 else list(self.pixels)
+
+    def _joined(self) -> Pixels:
+        if self.pixels.ndim == 3:
+            return self.pixels
+        edge = self.pixels.shape[1]
+        cross = np.zeros((3 * edge, 4 * edge, 3), np.float32)
+        for face, pixels in zip(FACES, self.pixels, strict=True):
+            row, column = (edge * each for each in CROSS_ORIGINS[face])
+            cross[row : row + edge, column : column + edge] = pixels
+        return cross
+
+
+def image_of_scene(scene: Scene, progress: Callable[[float], None] | None = None) -> Image:
+    """Evaluate a scene at all pixels of its map.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is shown.
+    progress : callable, optional
+        Called with the share that is done, from 0 to 1.
+
+    Raises
+    ------
+    CancelledError
+        If the scene's workers were stopped.
+    """
+    projection = scene.settings.view.projection
+    light = light_of_scene(scene)
+    pictures = []
+    canvases = projection.canvases()
+    total = sum(canvas.height for canvas in canvases)
+    done = 0
+    for canvas in canvases:
+        raster = Raster(scene, canvas)
+        pixels = np.empty((canvas.height, canvas.width, 3), np.float32)
+        for first in range(0, canvas.height, BAND_ROWS):
+            scene.workers.check()
+            last = min(first + BAND_ROWS, canvas.height)
+            pixels[first:last] = raster.rows(first, last)
+            done += last - first
+            if progress is not None:
+                progress(done / total)
+        pictures.append(pixels)
+    return Image(
+        pixels=pictures[0] if len(pictures) == 1 else np.stack(pictures),
+        projection=projection,
+        encoding=scene.settings.encoding,
+        light=light,
+        metadata={
+            **attributes_from_light(light),
+            **recipe_attributes(scene.planet, scene.settings),
+        },
+    )
