@@ -10,12 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
-from skybake import reference
 from skybake.baking.companion import beside
 from skybake.baking.settings import CUBE_LAYOUTS, MapSettings
 from skybake.baking.write import bake
 from skybake.optics.medium import build_medium
 from skybake.preset import Planet, load_preset
+from skybake.reference.estimate import radiance
 from skybake.scattering.atmosphere import build_atmosphere
 from skybake.sky.sky import METHODS, WAVELENGTHS, Sky
 
@@ -34,7 +34,7 @@ def compile_all() -> None:
     for method in ("full", "hillaire"):
         build_atmosphere(medium, method)
     here = np.zeros(1)
-    reference.radiance(medium, 0.0, SMALL.sun_elevation, here, here, samples=2)
+    radiance(medium, 0.0, SMALL.sun_elevation, here, here, samples=2)
     Sky(planet, SMALL.sun_elevation).radiance(np.array([0.0, 1.0, 0.0]))
 
 
