@@ -6,6 +6,7 @@ Needs matplotlib. ``--quick`` takes few suns and paths, to see that everything r
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import math
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -14,9 +15,9 @@ import matplotlib as mpl
 import numpy as np
 
 import skybake
-from skybake import reference
 from skybake.image.scene import Scene, luminous_weights
 from skybake.preset import load_preset
+from skybake.reference.estimate import radiance
 from skybake.sky.sky import Sky
 from tests.comparison import (
     Comparison,
@@ -161,7 +162,7 @@ def traced_rows(quick: bool) -> Iterator[list[str]]:
             for sun in (10.0,) if quick else (60.0, 10.0, 0.0, -6.0):
                 sky = Sky(planet, math.radians(sun), altitude, wavelengths=TRUTH_WAVELENGTHS[::-1])
                 fast = sky.radiance_per_irradiance(*view_cosines(zenith, azimuth, sun))
-                slow, stderr = reference.radiance(
+                slow, stderr = radiance(
                     sky.medium,
                     altitude,
                     sky.sun_elevation,
@@ -245,8 +246,8 @@ def plot_light(quick: bool, path: Path) -> None:
         fine = np.linspace(89.0, -18.0, 215)
         up = []
         for sun in fine:
-            sky.sun_elevation = math.radians(sun)
-            light = sky.radiance_per_irradiance(np.ones(1), np.array([math.sin(sky.sun_elevation)]))
+            source = dataclasses.replace(sky.source, elevation=math.radians(sun))
+            light = sky.skylight.radiance_per_irradiance(source, np.ones(1), np.array([source.mu]))
             up.append(float(light[0] @ luminous))
         left.semilogy(fine, up, style, label=f"skybake, {method}")
         light = np.array([illuminance(sun, method) for sun in suns])

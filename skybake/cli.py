@@ -15,6 +15,7 @@ from typing import Any, NoReturn
 
 import click
 
+from skybake.commands.advice import advised
 from skybake.commands.memory import memory_text
 from skybake.errors import SkybakeError
 from skybake.version import __version__
@@ -69,7 +70,7 @@ class _CommandLine(click.Group):
             except click.ClickException as error:
                 status = _fail(error.format_message(), error.exit_code)
             except SkybakeError as error:
-                status = _fail(str(error), FAILED)
+                status = _fail(advised(error), FAILED)
             except BrokenPipeError:
                 # Whoever read our output has closed it; nor can Python flush it at exit.
                 os.dup2(os.open(os.devnull, os.O_WRONLY), 1)

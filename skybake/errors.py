@@ -46,3 +46,7 @@ class CancelledError(Exception):
 
 class InputError(SkybakeError, ValueError):
     """A value or an input file lies outside what skybake can work with."""
+
+
+class TooThickError(InputError):
+    """An atmosphere is optically too thick for all orders of scattering to be solved for."""

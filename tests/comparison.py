@@ -8,8 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from skybake.sky.sky import Sky
-from tests.skies import truth_sky, view_cosines
+from skybake.angles import cosine_between
+from skybake.sky.skylight import Skylight
+from tests.skies import truth_skylight, view_cosines
 from tests.truth import TRUTH_WAVELENGTHS, load_truth, truth_medium
 
 FAINTEST = 1e-3
@@ -67,7 +68,7 @@ def sun_distance(rows: np.ndarray) -> np.ndarray:
     """Angle between views and the sun. [deg]"""
     sun, view = np.radians(rows["sun_elevation_deg"]), np.radians(rows["view_zenith_deg"])
     azimuth = np.radians(rows["relative_azimuth_deg"])
-    cosine = np.cos(view) * np.sin(sun) + np.sin(view) * np.cos(sun) * np.cos(azimuth)
+    cosine = cosine_between(np.cos(view), np.sin(view), np.sin(sun), np.cos(sun), azimuth)
     return np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
 
 
@@ -82,14 +83,15 @@ def places(table: np.ndarray) -> list[tuple[float, float]]:
     return sorted(pairs, key=lambda pair: (pair[0], -pair[1]))
 
 
-def radiance_at(sky: Sky, rows: np.ndarray) -> np.ndarray:
-    """Radiance of a sky per unit irradiance at rows of its altitude and sun. [sr^-1]"""
+def radiance_at(sky: Skylight, rows: np.ndarray) -> np.ndarray:
+    """Radiance by a sky's only source at rows of its altitude and sun, per irradiance. [sr^-1]"""
+    (source,) = sky.sources
     mu, nu = view_cosines(
-        rows["view_zenith_deg"], rows["relative_azimuth_deg"], math.degrees(sky.sun_elevation)
+        rows["view_zenith_deg"], rows["relative_azimuth_deg"], math.degrees(source.elevation)
     )
     directions, which = np.unique(np.stack([mu, nu], axis=1), axis=0, return_inverse=True)
     band = np.abs(TRUTH_WAVELENGTHS - rows["wavelength_nm"][:, None]).argmin(axis=1)
-    return sky.radiance_per_irradiance(*directions.T)[which.ravel(), band]
+    return sky.radiance_per_irradiance(source, *directions.T)[which.ravel(), band]
 
 
 def compare(
@@ -102,7 +104,7 @@ def compare(
         if altitude in altitudes and elevation in suns:
             rows = counted(rows_at(table, altitude, elevation))
             parts.append(rows)
-            sky = truth_sky(name, elevation, altitude, method)
+            sky = truth_skylight(name, elevation, altitude, method)
             errors.append(radiance_at(sky, rows) / rows["radiance"] - 1.0)
     rows = np.concatenate(parts)
     return Comparison(rows, np.concatenate(errors), rows["stderr"] / rows["radiance"])

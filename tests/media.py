@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from skybake.angles import cosine_between
 from skybake.optics.medium import Medium, altitude_nodes
 from skybake.optics.phase import SCATTERING_ANGLES
 
@@ -31,5 +32,5 @@ def plain_medium(
 
 def cosine_to_sun(mu, mu_s, azimuth):
     """Cosine of the angle between a view and a sun that are `azimuth` apart. [rad]"""
-    across = np.sqrt(np.maximum(1.0 - mu**2, 0.0) * np.maximum(1.0 - mu_s**2, 0.0))
-    return np.clip(mu * mu_s + across * np.cos(azimuth), -1.0, 1.0)
+    sine, sine_s = (np.sqrt(np.maximum(1.0 - x**2, 0.0)) for x in (mu, mu_s))
+    return np.clip(cosine_between(mu, sine, mu_s, sine_s, azimuth), -1.0, 1.0)

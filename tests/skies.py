@@ -5,45 +5,46 @@ import math
 
 import numpy as np
 
-from skybake.sky.sky import Sky
+from skybake.angles import cosine_between
+from skybake.scattering.atmosphere import build_atmosphere
+from skybake.sky.observer import Observer
+from skybake.sky.single import SingleSkylight
+from skybake.sky.skylight import Skylight
+from skybake.sky.source import Source
 from tests.truth import truth_medium
 
 
-def truth_sky(name, elevation, altitude, method="full"):
-    """Sky of a `truth_medium`; sun elevation in degrees, altitude in km.
-
-    It has no planet and so no star: only what is per unit irradiance can be asked.
-    """
-    sky = bare_sky(truth_medium(name), elevation, altitude, method)
-    sky.__dict__["atmosphere"] = _atmosphere(name, method)
-    return sky
-
-
-def bare_sky(medium, elevation, altitude, method="full"):
-    """Sky of any medium without a planet."""
-    sky = Sky.__new__(Sky)
-    sky.medium = medium
-    sky.method = method
-    sky.altitude = altitude
-    sky.r = medium.r_bottom + max(altitude, 1e-8)
-    sky.sun_elevation = math.radians(elevation)
-    sky.sun_azimuth = math.pi
-    return sky
+def white_source(elevation, azimuth=180.0, *, irradiance=1.0, wavelengths=3, **options):
+    """Source of even irradiance, the size of the sun and without limb; angles in degrees."""
+    return Source(
+        azimuth=math.radians(azimuth),
+        elevation=math.radians(elevation),
+        irradiance=np.full(wavelengths, irradiance),
+        angular_radius=math.radians(0.2667),
+        limb_darkening=np.zeros((2, wavelengths)),
+        **options,
+    )
 
 
-def without_diffuse_light(sky):
-    """Leave only light that is scattered or reflected once; changes the sky."""
-    field = sky.atmosphere.field
+def truth_skylight(name, elevation, altitude, method="full"):
+    """Light of one white source in a `truth_medium`; elevation in degrees, altitude in km."""
+    kind = SingleSkylight if method == "march" else Skylight
+    return kind(truth_atmosphere(name, method), Observer(altitude), (white_source(elevation),))
+
+
+def first_order(skylight):
+    """The same skylight with only what is scattered or reflected once."""
+    field = skylight.atmosphere.field
     dark = field._replace(
         radiance=np.zeros_like(field.radiance), ground=np.zeros_like(field.ground)
     )
-    sky.__dict__["atmosphere"] = sky.atmosphere._replace(field=dark)
-    return sky
+    atmosphere = skylight.atmosphere._replace(field=dark)
+    return Skylight(atmosphere, skylight.observer, skylight.sources)
 
 
 @functools.cache
-def _atmosphere(name, method):
-    return bare_sky(truth_medium(name), 0.0, 0.0, method).atmosphere
+def truth_atmosphere(name, method="full"):
+    return build_atmosphere(truth_medium(name), "full" if method == "full" else "hillaire")
 
 
 def view_cosines(view_zenith, azimuth, elevation):
@@ -51,5 +52,5 @@ def view_cosines(view_zenith, azimuth, elevation):
     theta, phi = np.radians(view_zenith), np.radians(azimuth)
     sun = math.radians(90.0 - elevation)
     mu = np.cos(theta)
-    nu = mu * math.cos(sun) + np.sin(theta) * math.sin(sun) * np.cos(phi)
+    nu = cosine_between(mu, np.sin(theta), math.cos(sun), math.sin(sun), phi)
     return mu, np.clip(nu, -1.0, 1.0)

@@ -1,6 +1,7 @@
 """The figures of docs/accuracy.md: light against independent tables, measurements and itself."""
 
 import csv
+import dataclasses
 import functools
 import io
 import math
@@ -14,7 +15,7 @@ from skybake.image.scene import Scene, luminous_weights
 from skybake.inspect.probe import Directions, probe
 from skybake.preset import load_preset
 from skybake.sky.sky import Sky
-from skybake.sky.view import horizon_angles
+from skybake.sky.table import horizon_angles
 from tests.cli.runs import run
 from tests.comparison import (
     compare,
@@ -25,7 +26,7 @@ from tests.comparison import (
     rows_at,
     sun_distance,
 )
-from tests.skies import truth_sky, without_diffuse_light
+from tests.skies import first_order, truth_skylight
 from tests.truth import TRUTH_WAVELENGTHS, load_truth
 
 EARTHS = ("EARTH_A", "EARTH_HAZE")
@@ -102,7 +103,7 @@ def test_first_order_alone_is_within_2_per_mille(name):
     squares = []
     for altitude, sun in places(table):
         rows = counted(rows_at(table, altitude, sun), "order1")
-        sky = without_diffuse_light(truth_sky(name, sun, altitude, "hillaire"))
+        sky = first_order(truth_skylight(name, sun, altitude, "hillaire"))
         squares.append((radiance_at(sky, rows) / rows["order1"] - 1.0) ** 2)
     assert math.sqrt(np.concatenate(squares).mean()) < 0.002
 
@@ -204,8 +205,8 @@ def zenith_luminance(planet):
     luminous = luminous_weights(sky)[:, 1]
     luminance = []
     for elevation in np.radians(np.arange(-4.0, -18.01, -0.25)):
-        sky.sun_elevation = elevation
-        up = sky.radiance_per_irradiance(np.ones(1), np.array([math.sin(elevation)]))
+        sun = dataclasses.replace(sky.source, elevation=elevation)
+        up = sky.skylight.radiance_per_irradiance(sun, np.ones(1), np.array([sun.mu]))
         luminance.append(float(up[0] @ luminous))
     return np.array(luminance)
 

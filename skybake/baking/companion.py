@@ -14,17 +14,17 @@ import numpy as np
 from skybake.formats.half import fill_halves, half_rows
 from skybake.jit.beside import compile_beside
 from skybake.jit.cache import is_warm
-from skybake.optics.legendre import truncate_peaks
+from skybake.optics.delta_m import scale_medium
 from skybake.optics.medium import build_medium, pad_wavelengths
 from skybake.preset import load_preset
 from skybake.scattering.fans import group_rays
 from skybake.scattering.grid import ORDER, empty_field, sun_angles
 from skybake.scattering.harmonics import fill_each, harmonics_at
 from skybake.scattering.multiple import add_diffuse, allocate_scratch, side_by_side
+from skybake.sky.disc import fill_sight_columns
 from skybake.sky.pixels import allocate_pixels, fill_directions
 from skybake.sky.sky import WAVELENGTHS
-from skybake.sky.sun import fill_sight_columns
-from skybake.sky.view import SkyView
+from skybake.sky.table import FoldedTable
 from skybake.transport.samples import allocate_samples
 
 KERNELS = (fill_each, add_diffuse, fill_sight_columns, fill_directions, fill_halves)
@@ -40,18 +40,18 @@ def beside() -> AbstractContextManager[None]:
 def compile_kernels() -> None:
     """Call each of `KERNELS` for nothing."""
     seen = build_medium(load_preset("earth"), WAVELENGTHS)
-    cut = truncate_peaks(pad_wavelengths(seen), ORDER)
-    field = empty_field(cut, np.array([0.0, 1.0]), sun_angles(2.0), ORDER)
+    scaled = scale_medium(pad_wavelengths(seen), ORDER)
+    field = empty_field(scaled, np.array([0.0, 1.0]), sun_angles(2.0), ORDER)
     harmonics_at(field.harmonics, np.zeros(1))
-    light = np.zeros((0, cut.medium.ground_albedo.size), np.float32)
+    light = np.zeros((0, scaled.medium.ground_albedo.size), np.float32)
     rays = group_rays(np.zeros((1, 4)))
-    samples, scratch = allocate_samples(cut.medium), allocate_scratch(field, rays)
-    add_diffuse(field, side_by_side(field), cut.medium, rays, 0, 0, samples, scratch, light)
+    samples, scratch = allocate_samples(scaled.medium), allocate_scratch(field, rays)
+    add_diffuse(field, side_by_side(field), scaled.medium, rays, 0, 0, samples, scratch, light)
     table, mu = np.zeros((1, 1, 1)), np.zeros(0)
     columns, visible = np.zeros((0, seen.density.shape[1])), np.zeros(0, np.bool_)
     fill_sight_columns(seen, table, seen.r_bottom, mu, columns, visible)
     rows, curves = np.zeros((2, 4, 12), np.float32), np.zeros((2, 1), np.float32)
-    view = SkyView(0.0, 1.5, 1.0, rows, curves)
+    view = FoldedTable(0.0, 1.5, 1.0, rows, curves)
     pixels = np.zeros((0, 1, 3), np.float32)
     place = np.zeros((1, 1))
     fill_directions(view, place, place, place, 0, 0, allocate_pixels(view, 1), pixels)

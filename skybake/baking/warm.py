@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 
-from skybake import reference
 from skybake.baking.companion import beside
 from skybake.baking.write import bake
 from skybake.image.settings import Lighting, MapSettings, View
@@ -18,6 +17,7 @@ from skybake.optics.medium import build_medium
 from skybake.preset import Planet, load_preset
 from skybake.projection import Cubemap, Equirect, Fisheye, Perspective
 from skybake.projection.cubemap import LAYOUTS
+from skybake.reference.estimate import radiance
 from skybake.scattering.atmosphere import build_atmosphere
 from skybake.sky.sky import METHODS, WAVELENGTHS, Sky
 
@@ -36,7 +36,7 @@ def compile_all() -> None:
     for method in ("full", "hillaire"):
         build_atmosphere(medium, method)
     here = np.zeros(1)
-    reference.radiance(medium, 0.0, SMALL.lighting.sun_elevation, here, here, samples=2)
+    radiance(medium, 0.0, SMALL.lighting.sun_elevation, here, here, samples=2)
     Sky(planet, SMALL.lighting.sun_elevation).radiance(np.array([0.0, 1.0, 0.0]))
 
 

@@ -90,7 +90,8 @@ _OPTIONS = (
         type=click.Choice(parameters.METHODS),
         default="full",
         show_default=True,
-        help="Light transport: all orders of scattering, Hillaire's closure, or single scattering.",
+        help="Light transport: all orders of scattering, Hillaire's closure, or as a check single "
+        "scattering by direct quadrature.",
     ),
 )
 

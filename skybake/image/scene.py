@@ -16,10 +16,11 @@ from skybake.optics.medium import Array
 from skybake.optics.spectrum import star_spectrum
 from skybake.preset import Planet
 from skybake.projection.cells import Cells
+from skybake.sky.disc import Disc
 from skybake.sky.pixels import allocate_pixels, fill_directions
 from skybake.sky.sky import WAVELENGTHS, Sky
-from skybake.sky.sun import SunDisc
-from skybake.sky.view import SkyView
+from skybake.sky.spectral_table import fold_table
+from skybake.sky.table import FoldedTable
 
 PROBE_ZENITHS = 192
 PROBE_AZIMUTHS = 256
@@ -72,8 +73,12 @@ class Scene:
             method=settings.lighting.method,
             workers=workers,
         )
-        self.sun = SunDisc(self.sky)
         self.sun_zenith = math.pi / 2.0 - settings.lighting.sun_elevation
+
+    @cached_property
+    def sun(self) -> Disc:
+        """The sun's disc."""
+        return Disc(self.sky.skylight, self.sky.source)
 
     @cached_property
     def xyz_weights(self) -> Array:
@@ -89,9 +94,10 @@ class Scene:
         return weights
 
     @cached_property
-    def view(self) -> SkyView:
+    def view(self) -> FoldedTable:
         """The sky as a table of pixel values."""
-        return self.sky.view(self.rgb_weights)
+        table = self.sky.skylight.spectral_table(self.sky.source)
+        return fold_table(table, self.sky.skylight.basis, self.rgb_weights)
 
     @property
     def layer_names(self) -> tuple[str, ...]:

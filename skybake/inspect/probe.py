@@ -10,13 +10,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from skybake import reference
+from skybake.angles import cosine_between
 from skybake.errors import InputError
 from skybake.image.light import light_of_scene
 from skybake.image.scene import Scene, luminous_weights
 from skybake.image.settings import Lighting, MapSettings, View
 from skybake.optics.medium import Array
 from skybake.preset import Planet
+from skybake.reference.estimate import radiance
 from skybake.sky.sky import WAVELENGTHS, Sky
 
 COLUMNS = ("view_zenith_deg", "relative_azimuth_deg")
@@ -159,7 +160,7 @@ def _radiance(
 ) -> tuple[Array, Array | None]:
     """Radiance per unit irradiance and, by the reference, its standard error. [sr⁻¹]"""
     if method == REFERENCE:
-        return reference.radiance(
+        return radiance(
             sky.medium,
             sky.altitude,
             sky.sun_elevation,
@@ -167,11 +168,9 @@ def _radiance(
             directions.azimuth,
             samples=samples,
         )
-    sun_zenith = math.pi / 2.0 - sky.sun_elevation
-    mu = np.cos(directions.zenith)
-    nu = mu * math.cos(sun_zenith) + np.sin(directions.zenith) * math.sin(sun_zenith) * np.cos(
-        directions.azimuth
-    )
+    sun_zenith = sky.source.zenith
+    mu, sine = np.cos(directions.zenith), np.sin(directions.zenith)
+    nu = cosine_between(mu, sine, math.cos(sun_zenith), math.sin(sun_zenith), directions.azimuth)
     return sky.radiance_per_irradiance(mu, nu), None
 
 

@@ -10,13 +10,13 @@ import numpy as np
 from skybake.colour.observer import xyz_weights
 from skybake.constants import BOLTZMANN, DOBSON_UNIT
 from skybake.errors import InputError, PresetError
+from skybake.optics.delta_m import scale_medium
 from skybake.optics.haze import HAZE_WAVELENGTH, turbidity, visibility
-from skybake.optics.legendre import truncate_peaks
 from skybake.optics.medium import (
     Array,
     Medium,
-    altitude_nodes,
     build_medium,
+    vertical_columns,
     vertical_optical_depth,
 )
 from skybake.optics.spectrum import limb_darkening, star_irradiance, star_spectrum
@@ -97,8 +97,7 @@ def summarise(planet: Planet) -> Summary:
     with np.errstate(invalid="ignore", divide="ignore"):
         albedo = medium.scattering / medium.extinction
         total_albedo = (np.nan_to_num(albedo) * depth).sum(axis=0) / depth.sum(axis=0)
-    altitude = altitude_nodes(medium.r_bottom, medium.r_top)
-    columns = np.asarray(np.trapezoid(medium.density, altitude, axis=0))
+    columns = vertical_columns(medium)
     rows = [
         ConstituentSummary(one.name, depth[i], albedo[i], _column(one, float(columns[i])))
         for i, one in enumerate(planet.constituents)
@@ -122,7 +121,11 @@ def _try_all(planet: Planet) -> Medium:
     wavelengths = np.array(planet.wavelengths or WAVELENGTHS, dtype=float)
     medium = build_medium(planet, wavelengths)
     arrays = [
-        *medium[2:],
+        medium.density,
+        medium.scattering,
+        medium.extinction,
+        medium.phase,
+        medium.ground_albedo,
         star_irradiance(planet.star, wavelengths),
         limb_darkening(planet.star, wavelengths),
     ]
@@ -132,11 +135,11 @@ def _try_all(planet: Planet) -> Medium:
 
 
 def _refusal(medium: Medium) -> str | None:
-    # Truncation only takes away from the depth, and most air needs none to be thin enough.
+    # Scaling only takes away from the depth, and most air needs none to be thin enough.
     if vertical_optical_depth(medium).sum(axis=0).max() <= MAX_DEPTH:
         return None
     try:
-        check_depth(truncate_peaks(medium, ORDER))
+        check_depth(scale_medium(medium, ORDER))
     except InputError as error:
         return str(error)
     return None

@@ -1,1 +1,1 @@
-"""Physics in numpy: what each constituent of the air does to light."""
+"""Physics in numpy: what each constituent of an atmosphere does to light."""

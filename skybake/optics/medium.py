@@ -20,7 +20,7 @@ ALTITUDE_NODES = 1024
 """Nodes of `Medium.density`; linear interpolation of exp(-h/1.2 km) is then good to 3e-5."""
 
 LANES = 4
-"""Kernels take wavelengths, and the lobes of a sky, in multiples: what a loop over them leaves
+"""Kernels take wavelengths, and the curves of a basis, in multiples: what a loop over them leaves
 beside whole vectors is done by as many."""
 
 
@@ -86,7 +86,7 @@ def build_medium(planet: Planet, wavelengths: Array, bandwidth: float = BANDWIDT
     altitude = altitude_nodes(planet.radius, r_top)
     density = np.stack([eval_profile(c.profile, altitude) for c in planet.constituents], axis=1)
     # Kernels take the density as linear between nodes, so the trapezoid is its exact column.
-    columns = np.asarray(np.trapezoid(density, altitude, axis=0))
+    columns = _columns(density, altitude)
     for constituent, column in zip(planet.constituents, columns, strict=True):
         if not column > 0.0:
             raise PresetError(
@@ -111,12 +111,19 @@ def build_medium(planet: Planet, wavelengths: Array, bandwidth: float = BANDWIDT
     )
 
 
+def vertical_columns(medium: Medium) -> Array:
+    """Column of each constituent's relative density from the ground to the top. [km]"""
+    return _columns(medium.density, altitude_nodes(medium.r_bottom, medium.r_top))
+
+
 def vertical_optical_depth(medium: Medium) -> Array:
     """Optical depth of each constituent from the ground to the top, (constituent, wavelength)."""
-    altitude = altitude_nodes(medium.r_bottom, medium.r_top)
-    columns = np.asarray(np.trapezoid(medium.density, altitude, axis=0))
-    optical_depth: Array = columns[:, None] * medium.extinction
+    optical_depth: Array = vertical_columns(medium)[:, None] * medium.extinction
     return optical_depth
+
+
+def _columns(density: Array, altitude: Array) -> Array:
+    return np.asarray(np.trapezoid(density, altitude, axis=0))
 
 
 def pad_wavelengths(medium: Medium) -> Medium:

@@ -11,11 +11,12 @@ import numpy.typing as npt
 from skybake.errors import InputError
 from skybake.jit.workers import ALL_CPUS
 from skybake.optics.medium import Medium
+from skybake.optics.phase import eval_phase
 from skybake.reference.air import Air, air_at
 from skybake.reference.guide import Guide, make_guide
 from skybake.reference.paths import mean_irradiance, mean_radiance
 from skybake.reference.rays import transmittance_to_space
-from skybake.reference.single import single_radiance
+from skybake.reference.single import trace_single
 
 Array = npt.NDArray[np.float64]
 Direction = tuple[float, float, float]
@@ -138,7 +139,7 @@ def single_scattering(
     view_zenith: npt.ArrayLike,
     relative_azimuth: npt.ArrayLike,
 ) -> Array:
-    """Radiance of light scattered or reflected exactly once, by fine quadrature.
+    """Radiance of light scattered or reflected exactly once, by quadrature.
 
     Parameters and errors are those of `radiance`.
 
@@ -148,16 +149,12 @@ def single_scattering(
         Per unit solar irradiance at the top of the atmosphere. [sr⁻¹]
     """
     sun, views = _directions(altitude, sun_elevation, view_zenith, relative_azimuth)
-    airs = [air_at(medium, wavelength) for wavelength in range(len(medium.ground_albedo))]
-    result = np.empty((len(views), len(airs)))
-
-    def integrate(begin: int, end: int) -> None:
-        for row in range(begin, end):
-            index = np.unravel_index(row, result.shape)
-            result[index] = single_radiance(airs[index[1]], sun, altitude, views[index[0]])
-
-    ALL_CPUS.run_rows(result.size, integrate)
-    return result
+    direction = np.array(views)
+    mu, nu = direction[:, 2].copy(), np.clip(direction @ sun, -1.0, 1.0)
+    r, mu_s = np.full(mu.shape, medium.r_bottom + altitude), np.full(mu.shape, sun[2])
+    light = trace_single(medium, r, mu, mu_s, nu)
+    radiance: Array = (light.single * eval_phase(medium.phase, nu)).sum(axis=1) + light.ground
+    return radiance
 
 
 def irradiance(

@@ -1,4 +1,4 @@
-"""All tables of an atmosphere: what depends neither on the observer nor on the sun."""
+"""Building the tables of an atmosphere, and keeping them in memory and on disk."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ import hashlib
 import threading
 from collections import OrderedDict
 from concurrent.futures import Future
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from skybake.jit.workers import ALL_CPUS, Workers
-from skybake.optics.legendre import Truncation, channel_groups, keep_peaks, truncate_peaks
-from skybake.optics.lobes import Lobes, split_phase
-from skybake.optics.medium import Array, Medium, pad_wavelengths
+from skybake.optics.delta_m import ScaledMedium, keep_unscaled, phase_groups, scale_medium
+from skybake.optics.medium import Medium, pad_wavelengths
+from skybake.optics.phase_basis import PhaseBasis, build_phase_basis
 from skybake.scattering.closure import close_field
 from skybake.scattering.field import DiffuseField, altitude_layers, sun_bins, sun_factors
-from skybake.scattering.grid import ORDER
+from skybake.scattering.grid import ORDER, no_field
 from skybake.scattering.harmonics import build_harmonics
 from skybake.scattering.solver import solve_field
 from skybake.scattering.store import (
@@ -26,36 +26,12 @@ from skybake.scattering.store import (
     stored_tables,
     write_tables,
 )
+from skybake.scattering.tables import Atmosphere
 from skybake.scattering.transmittance import build_columns
 from skybake.transport.shells import altitude_shells
 
 KEPT = 4
 """Atmospheres that stay in memory: of a sequence all maps share one, or each has its own."""
-
-
-class Atmosphere(NamedTuple):
-    """Tables that rays look up.
-
-    Attributes
-    ----------
-    cut : Truncation
-        The medium without forward peaks, and what restores them; of wavelengths as
-        `pad_wavelengths` leaves them, as is all of the rest but the lobes.
-    shells : ndarray of float64
-        Altitudes at which rays are cut into steps. [km]
-    columns : ndarray of float64
-        Columns toward the sun, see `build_columns`.
-    field : DiffuseField
-        The light that was scattered before.
-    lobes : Lobes
-        Curves that the phase functions of `cut` are sums of.
-    """
-
-    cut: Truncation
-    shells: Array
-    columns: Array
-    field: DiffuseField
-    lobes: Lobes
 
 
 def build_atmosphere(medium: Medium, method: str, workers: Workers = ALL_CPUS) -> Atmosphere:
@@ -72,15 +48,31 @@ def build_atmosphere(medium: Medium, method: str, workers: Workers = ALL_CPUS) -
 
     Raises
     ------
-    InputError
-        If all orders were asked for and the air is optically too thick.
+    TooThickError
+        If all orders were asked for and the atmosphere is optically too thick.
+    """
+    dark = dark_atmosphere(medium, method, workers)
+    solve = solve_field if method == "full" else close_field
+    return dark._replace(field=solve(dark, workers))
+
+
+def dark_atmosphere(medium: Medium, method: str, workers: Workers = ALL_CPUS) -> Atmosphere:
+    """Build all tables but the diffuse field, which is left without light.
+
+    Parameters are those of `build_atmosphere`.
     """
     padded = pad_wavelengths(medium)
-    cut = truncate_peaks(padded, ORDER) if method == "full" else keep_peaks(padded)
-    columns = build_columns(padded, workers=workers)
-    solve = solve_field if method == "full" else close_field
-    lobes = split_phase(cut.phase[..., : medium.ground_albedo.size], channel_groups(cut))
-    return Atmosphere(cut, altitude_shells(medium), columns, solve(cut, columns, workers), lobes)
+    scaled = scale_medium(padded, ORDER) if method == "full" else keep_unscaled(padded)
+    return Atmosphere(
+        medium=medium,
+        scaled=scaled,
+        shells=altitude_shells(medium),
+        columns=build_columns(padded, workers=workers),
+        field=no_field(scaled),
+        basis=build_phase_basis(
+            scaled.phase[..., : medium.ground_albedo.size], phase_groups(scaled)
+        ),
+    )
 
 
 _recent: OrderedDict[str, Future[Atmosphere]] = OrderedDict()
@@ -158,11 +150,11 @@ def atmosphere_key(medium: Medium, method: str) -> str:
 
 
 def _to_arrays(atmosphere: Atmosphere) -> dict[str, Any]:
-    cut, field = atmosphere.cut, atmosphere.field
-    arrays = {f"cut_{name}": getattr(cut, name) for name in cut._fields if name != "medium"}
+    scaled, field = atmosphere.scaled, atmosphere.field
+    arrays = {f"cut_{name}": getattr(scaled, name) for name in scaled._fields if name != "medium"}
     return arrays | {
-        "scaled_scattering": cut.medium.scattering,
-        "scaled_extinction": cut.medium.extinction,
+        "scaled_scattering": scaled.medium.scattering,
+        "scaled_extinction": scaled.medium.extinction,
         "shells": atmosphere.shells,
         "columns": atmosphere.columns,
         "order": np.array(field.harmonics.order),
@@ -171,13 +163,13 @@ def _to_arrays(atmosphere: Atmosphere) -> dict[str, Any]:
         "source": field.source,
         "radiance": field.radiance,
         "ground": field.ground,
-        "lobe_curves": atmosphere.lobes.curves,
-        "lobe_weights": atmosphere.lobes.weights,
+        "lobe_curves": atmosphere.basis.curves,
+        "lobe_weights": atmosphere.basis.weights,
     }
 
 
 def _from_arrays(medium: Medium, arrays: dict[str, Any]) -> Atmosphere:
-    cut_arrays = {name: arrays[f"cut_{name}"] for name in Truncation._fields if name != "medium"}
+    cut_arrays = {name: arrays[f"cut_{name}"] for name in ScaledMedium._fields if name != "medium"}
     constituents = medium.scattering.shape[0]
     scaled = pad_wavelengths(medium)._replace(
         scattering=arrays["scaled_scattering"],
@@ -195,6 +187,11 @@ def _from_arrays(medium: Medium, arrays: dict[str, Any]) -> Atmosphere:
         radiance=arrays["radiance"],
         ground=arrays["ground"],
     )
-    cut = Truncation(medium=scaled, **cut_arrays)
-    lobes = Lobes(arrays["lobe_curves"], arrays["lobe_weights"])
-    return Atmosphere(cut, arrays["shells"], arrays["columns"], field, lobes)
+    return Atmosphere(
+        medium=medium,
+        scaled=ScaledMedium(medium=scaled, **cut_arrays),
+        shells=arrays["shells"],
+        columns=arrays["columns"],
+        field=field,
+        basis=PhaseBasis(arrays["lobe_curves"], arrays["lobe_weights"]),
+    )

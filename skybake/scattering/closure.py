@@ -10,12 +10,13 @@ import math
 
 import numpy as np
 
+from skybake.angles import cosine_between
 from skybake.jit.workers import ALL_CPUS, Workers
-from skybake.optics.legendre import Truncation
 from skybake.optics.medium import Array
 from skybake.scattering.field import DiffuseField
 from skybake.scattering.grid import empty_field, sun_angles
 from skybake.scattering.ray import trace_rays
+from skybake.scattering.tables import Atmosphere
 from skybake.transport.shells import altitude_shells
 
 ALTITUDES = 16
@@ -25,15 +26,13 @@ SHELLS = 13
 LAST_SUN_ANGLE = math.radians(120.0)
 
 
-def close_field(cut: Truncation, columns: Array, workers: Workers = ALL_CPUS) -> DiffuseField:
+def close_field(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> DiffuseField:
     """Build the table of Hillaire's method from 64 directions at each node.
 
     Parameters
     ----------
-    cut : Truncation
-        The atmosphere; Hillaire's method truncates no peaks.
-    columns : ndarray
-        Table of `build_columns`.
+    atmosphere : Atmosphere
+        Its medium and columns; Hillaire's method truncates no peaks.
     workers : Workers, optional
         Who does the work.
 
@@ -43,38 +42,34 @@ def close_field(cut: Truncation, columns: Array, workers: Workers = ALL_CPUS) ->
         Of order 0. Good to some percent by day; in twilight a closure at the
         point itself loses the light that comes from far away.
     """
-    shells = altitude_shells(cut.medium, SHELLS)
-    field = empty_field(cut, altitude_shells(cut.medium, ALTITUDES), sun_angles(LAST_SUN_ANGLE), 0)
-    one = field._replace(radiance=np.full_like(field.radiance, math.sqrt(4.0 * math.pi)))
-    black = cut._replace(
-        medium=cut.medium._replace(ground_albedo=np.zeros_like(cut.medium.ground_albedo))
+    scaled = atmosphere.scaled
+    medium = scaled.medium
+    nodes = altitude_shells(medium, ALTITUDES)
+    field = empty_field(scaled, nodes, sun_angles(LAST_SUN_ANGLE), 0)
+    coarse = atmosphere._replace(shells=altitude_shells(medium, SHELLS))
+    black_ground = medium._replace(ground_albedo=np.zeros_like(medium.ground_albedo))
+    dark = coarse._replace(field=field._replace(radiance=np.zeros_like(field.radiance)))
+    one = coarse._replace(
+        scaled=scaled._replace(medium=black_ground),
+        field=field._replace(radiance=np.full_like(field.radiance, math.sqrt(4.0 * math.pi))),
     )
     mu_s = np.cos(field.sun_angle)
     for i, h in enumerate(field.altitude):
         # A ray that starts on the ground itself must still see the sky above it.
-        r = cut.medium.r_bottom + max(h, 1e-6)
-        mu, share = _split_directions(-math.sqrt(1.0 - (cut.medium.r_bottom / r) ** 2))
-        radiance = _mean_radiance(
-            cut,
-            shells,
-            columns,
-            field._replace(radiance=np.zeros_like(field.radiance)),
-            r,
-            mu,
-            mu_s,
-            workers,
-        )
-        second = np.tensordot(share, radiance, axes=1)
+        r = medium.r_bottom + max(h, 1e-6)
+        mu, share = _split_directions(-math.sqrt(1.0 - (medium.r_bottom / r) ** 2))
+        second = np.tensordot(share, _mean_radiance(dark, r, mu, mu_s, workers), axes=1)
         same = np.full_like(mu, r), mu, np.ones_like(mu), mu
-        # A field of 1 in all the air yields the share of light that scatters again.
-        returned = share @ trace_rays(black, shells, columns, one, *same, workers=workers).diffuse
+        # A field of 1 in all the atmosphere yields the share of light that scatters again.
+        returned = share @ trace_rays(one, *same, workers=workers).diffuse
         transfer = second / (1.0 - np.minimum(returned, 0.999))
         field.radiance[i, :, 0] = math.sqrt(4.0 * math.pi) * transfer
-    r = cut.medium.r_bottom + 1e-6
+    r = medium.r_bottom + 1e-6
     mu, share = _split_directions(0.0)
     upward = mu > 0.0
     flux = 4.0 * math.pi * share[upward] * mu[upward]
-    radiance = _mean_radiance(cut, shells, columns, field, r, mu[upward], mu_s, workers)
+    closed = coarse._replace(field=field)
+    radiance = _mean_radiance(closed, r, mu[upward], mu_s, workers)
     return field._replace(ground=np.tensordot(flux, radiance, axes=1))
 
 
@@ -88,21 +83,14 @@ def _split_directions(mu_horizon: float) -> tuple[Array, Array]:
 
 
 def _mean_radiance(
-    cut: Truncation,
-    shells: Array,
-    columns: Array,
-    field: DiffuseField,
-    r: float,
-    mu: Array,
-    mu_s: Array,
-    workers: Workers,
+    atmosphere: Atmosphere, r: float, mu: Array, mu_s: Array, workers: Workers
 ) -> Array:
     """Mean over azimuth with isotropic phase functions, shape (mu, mu_s, wavelength)."""
     azimuth = math.pi * (np.arange(AZIMUTHS) + 0.5) / AZIMUTHS
     mu, mu_s, azimuth = np.meshgrid(mu, mu_s, azimuth, indexing="ij")
-    nu = mu * mu_s + np.sqrt((1.0 - mu**2) * (1.0 - mu_s**2)) * np.cos(azimuth)
+    nu = cosine_between(mu, np.sqrt(1.0 - mu**2), mu_s, np.sqrt(1.0 - mu_s**2), azimuth)
     rays = np.full(mu.size, r), mu.ravel(), mu_s.ravel(), nu.ravel()
-    light = trace_rays(cut, shells, columns, field, *rays, workers=workers)
+    light = trace_rays(atmosphere, *rays, workers=workers)
     radiance = light.single.sum(axis=1) / (4.0 * math.pi) + light.diffuse
     mean: Array = radiance.reshape(*mu.shape, -1).mean(axis=2)
     return mean

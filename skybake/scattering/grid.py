@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from skybake.optics.legendre import Truncation
-from skybake.optics.medium import Array, altitude_nodes
+from skybake.optics.delta_m import ScaledMedium
+from skybake.optics.medium import Array, Medium, vertical_optical_depth
 from skybake.scattering.field import DiffuseField, altitude_layers, sun_bins, sun_factors
 from skybake.scattering.harmonics import build_harmonics, harmonics_at
 from skybake.transport.shells import altitude_shells
@@ -63,10 +63,10 @@ class Grid(NamedTuple):
     last_judged: float
 
 
-def build_grid(cut: Truncation) -> Grid:
+def build_grid(scaled: ScaledMedium) -> Grid:
     """Choose the solver's nodes for an atmosphere."""
-    medium = cut.medium
-    depth = vertical_depth(cut)
+    medium = scaled.medium
+    depth = thickest_depth(medium)
     more = round(ALTITUDES_PER_DEPTH * max(depth - THIN_DEPTH, 0.0))
     altitude = altitude_shells(medium, min(ALTITUDES + more, MAX_ALTITUDES))
     mu, weight = zip(
@@ -83,12 +83,9 @@ def build_grid(cut: Truncation) -> Grid:
     )
 
 
-def vertical_depth(cut: Truncation) -> float:
-    """Largest vertical optical depth over wavelength, forward peaks left out."""
-    medium = cut.medium
-    altitude = altitude_nodes(medium.r_bottom, medium.r_top)
-    columns = np.asarray(np.trapezoid(medium.density, altitude, axis=0))
-    return float((columns @ medium.extinction).max())
+def thickest_depth(medium: Medium) -> float:
+    """Vertical optical depth at the wavelength where it is largest."""
+    return float(vertical_optical_depth(medium).sum(axis=0).max())
 
 
 def azimuths(order: int) -> Array:
@@ -117,23 +114,32 @@ def _split_directions(r_bottom: float, h: float, upward: int, downward: int) -> 
     return np.concatenate(mu), np.concatenate(weight)
 
 
-def empty_field(cut: Truncation, altitude: Array, sun_angle: Array, order: int) -> DiffuseField:
+def empty_field(
+    scaled: ScaledMedium, altitude: Array, sun_angle: Array, order: int
+) -> DiffuseField:
     """Field without light on given nodes."""
     harmonics = build_harmonics(order)
-    wavelengths = cut.moments.shape[2]
+    wavelengths = scaled.moments.shape[2]
     return DiffuseField(
         harmonics=harmonics,
         altitude=altitude,
-        layer=altitude_layers(cut.medium, altitude),
+        layer=altitude_layers(scaled.medium, altitude),
         sun_angle=sun_angle,
         sun_bin=sun_bins(sun_angle),
         sun_factor=sun_factors(sun_angle),
-        source=np.ascontiguousarray(cut.medium.scattering[:, None] * cut.moments[:, : order + 1]),
+        source=np.ascontiguousarray(
+            scaled.medium.scattering[:, None] * scaled.moments[:, : order + 1]
+        ),
         radiance=np.zeros(
             (altitude.size, sun_angle.size, harmonics.degree.size, wavelengths), np.float32
         ),
         ground=np.zeros((sun_angle.size, wavelengths)),
     )
+
+
+def no_field(scaled: ScaledMedium) -> DiffuseField:
+    """Field that stands for no diffuse light: rays leave out a field on one altitude."""
+    return empty_field(scaled, np.zeros(1), sun_angles(math.pi), 0)
 
 
 def project(

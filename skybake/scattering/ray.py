@@ -9,13 +9,13 @@ import numpy.typing as npt
 
 from skybake.jit.arguments import flatten
 from skybake.jit.workers import ALL_CPUS, Workers
-from skybake.optics.legendre import PEAK_NODES, Truncation
+from skybake.optics.delta_m import PEAK_NODES
 from skybake.optics.medium import Array
 from skybake.scattering.fans import group_rays
-from skybake.scattering.field import DiffuseField
 from skybake.scattering.multiple import add_diffuse, allocate_scratch, side_by_side
 from skybake.scattering.single import add_single_scattering
 from skybake.scattering.sunlit import allocate_sunlit
+from skybake.scattering.tables import Atmosphere
 from skybake.transport.samples import allocate_samples
 from skybake.transport.trace import MAX_ARC, trace
 
@@ -24,13 +24,13 @@ LEAST_FANS = 3
 
 
 class RayLight(NamedTuple):
-    """Light along rays, per unit irradiance of the sun above the air.
+    """Light along rays, per unit irradiance of the sun above the atmosphere.
 
     Attributes
     ----------
-    single : ndarray of float64, shape (ray, channel, wavelength)
-        Sunlight scattered once toward the observer, before the phase functions of
-        the channels are applied.
+    single : ndarray of float64, shape (ray, phase function, wavelength)
+        Sunlight scattered once toward the observer, before the phase functions
+        `ScaledMedium.phase` are applied.
     diffuse : ndarray of float32, shape (ray, wavelength)
         The rest: scattered twice or more, and from the ground. [sr⁻¹]
     """
@@ -40,10 +40,7 @@ class RayLight(NamedTuple):
 
 
 def trace_rays(
-    cut: Truncation,
-    shells: Array,
-    columns: Array,
-    field: DiffuseField,
+    atmosphere: Atmosphere,
     r: Array,
     mu: Array,
     mu_s: Array,
@@ -56,9 +53,8 @@ def trace_rays(
 
     Parameters
     ----------
-    cut, shells, columns, field
-        The atmosphere without forward peaks, its `altitude_shells`, its table of
-        `build_columns` and its diffuse light.
+    atmosphere : Atmosphere
+        What the rays pass through.
     r, mu : ndarray of float64, shape (ray,)
         Starts of the rays [km] and cosines of their zenith angles.
     mu_s, nu : ndarray of float64, shape (ray,)
@@ -72,33 +68,34 @@ def trace_rays(
     Returns
     -------
     RayLight
-        Rays that miss the air and the ground hold 0.
+        Rays that miss the atmosphere and the ground hold 0.
 
     Notes
     -----
     Neighbours with the same r and mu share samples, so rays are best ordered by
     direction first.
     """
-    channels, wavelengths = cut.phase.shape[0], cut.phase.shape[2]
-    single = np.zeros((r.size, channels, wavelengths))
+    scaled, field = atmosphere.scaled, atmosphere.field
+    phases, _, wavelengths = scaled.phase.shape
+    single = np.zeros((r.size, phases, wavelengths))
     diffuse = np.zeros((r.size, wavelengths), np.float32)
     fans = group_rays(np.stack([r, mu, mu_s, nu], axis=1))
 
     # A field on less than two altitudes is none.
     has_field = field.altitude.size > 1
     starts, light = flatten(fans.starts), flatten(diffuse)
-    sources = [flatten(each) for each in (cut, PEAK_NODES, columns)]
-    medium, bundle, scattered = map(flatten, (cut.medium, fans, single))
+    sources = [flatten(each) for each in (scaled, PEAK_NODES, atmosphere.columns)]
+    medium, bundle, scattered = map(flatten, (scaled.medium, fans, single))
     moments = flatten(field), flatten(side_by_side(field))
 
     def work(begin: int, end: int) -> None:
-        work_space = allocate_samples(cut.medium)
+        work_space = allocate_samples(scaled.medium)
         samples = flatten(work_space)
         scratch = flatten(allocate_scratch(field, fans)) if has_field else None
         while begin < end:
-            stop = trace(medium, shells, max_arc, starts, begin, end, samples)
+            stop = trace(medium, atmosphere.shells, max_arc, starts, begin, end, samples)
             batch = bundle, begin, stop, samples
-            sunlit = allocate_sunlit(cut.medium, int(work_space.number[: stop - begin].max()))
+            sunlit = allocate_sunlit(scaled.medium, int(work_space.number[: stop - begin].max()))
             add_single_scattering(*sources, *batch, sunlit, scattered, light)
             if has_field:
                 add_diffuse(*moments, medium, *batch, scratch, light)

@@ -13,13 +13,13 @@ from skybake.transport.exponential import fast_exp32
 
 
 @kernel
-def add_single_scattering(cut, nodes, columns, fans, begin, end, samples, lit, single, ground):
+def add_single_scattering(scaled, nodes, columns, fans, begin, end, samples, lit, single, ground):
     """Add the sunlight that reaches the samples of rays and the ground at their ends.
 
     Parameters
     ----------
-    cut : Truncation
-        The atmosphere without forward peaks, and what restores them.
+    scaled : ScaledMedium
+        The atmosphere's medium, and what restores its forward peaks.
     nodes : ndarray of float64
         `PEAK_NODES`.
     columns : ndarray
@@ -30,33 +30,33 @@ def add_single_scattering(cut, nodes, columns, fans, begin, end, samples, lit, s
         Fans, and the result of `trace` for their starts, in the truncated medium.
     lit : Sunlit
         Work space.
-    single : ndarray of float64, shape (ray, channel, wavelength)
-        Receives, per unit irradiance, what the phase functions of the channels
-        multiply; see `skybake.optics.legendre.Truncation`.
+    single : ndarray of float64, shape (ray, phase function, wavelength)
+        Receives, per unit irradiance, what the phase functions multiply; see
+        `skybake.optics.delta_m.ScaledMedium`.
     ground : ndarray of float32, shape (ray, wavelength)
         Receives the radiance of the ground per unit irradiance. [sr⁻¹]
     """
-    constituents, wavelengths = cut.medium.extinction.shape
+    constituents, wavelengths = scaled.medium.extinction.shape
     depth, light, filled = lit.depth, lit.light, lit.filled
     for fan in range(begin, end):
         first, length = samples.first[fan - begin], samples.length[fan - begin]
         last = first + samples.number[fan - begin]
         for i in range(fans.first[fan], fans.first[fan + 1]):
             count = gather_sunlit(
-                cut.medium, columns, fans.rays[i], samples, first, last, length, lit
+                scaled.medium, columns, fans.rays[i], samples, first, last, length, lit
             )
             for k in range(wavelengths):
-                _fill_light(cut, k, count, lit, depth, light)
+                _fill_light(scaled, k, count, lit, depth, light)
                 for c in range(constituents):
-                    scattering = cut.medium.scattering[c, k]
+                    scattering = scaled.medium.scattering[c, k]
                     single[i, c, k] += scattering * _sum_products(count, lit.density[c], light)
-                if cut.peaked.size > 0:
-                    _split_peak(cut, k, count, lit, depth, light, filled)
-                    _add_peak(cut, nodes, k, count, lit, light, filled, single[i])
+                if scaled.peaked.size > 0:
+                    _split_peak(scaled, k, count, lit, depth, light, filled)
+                    _add_peak(scaled, nodes, k, count, lit, light, filled, single[i])
             if samples.hits_ground[fan - begin]:
                 behind = samples.transmittance[fan - begin]
                 _add_ground(
-                    cut.medium,
+                    scaled.medium,
                     columns,
                     fans.rays[i],
                     length,
@@ -68,19 +68,19 @@ def add_single_scattering(cut, nodes, columns, fans, begin, end, samples, lit, s
 
 
 @kernel
-def _fill_light(cut, k, count, lit, depth, light):
+def _fill_light(scaled, k, count, lit, depth, light):
     """Write the share of sunlight that arrives by way of each sample times its weight."""
     for n in range(count):
         depth[n] = np.float32(0.0)
     for c in range(lit.sunward.shape[0]):
-        _add_scaled(count, cut.medium.extinction[c, k], lit.sunward[c], depth)
+        _add_scaled(count, scaled.medium.extinction[c, k], lit.sunward[c], depth)
     weight = lit.weight[k]
     for n in range(count):
         light[n] = weight[n] * fast_exp32(-depth[n])
 
 
 @kernel
-def _split_peak(cut, k, count, lit, depth, light, filled):
+def _split_peak(scaled, k, count, lit, depth, light, filled):
     """Keep of the light what was scattered within peaks only; how far they have filled.
 
     That is 1 - exp(-f y), y the depth of peak scattering between sun and sample.
@@ -88,9 +88,9 @@ def _split_peak(cut, k, count, lit, depth, light, filled):
     for n in range(count):
         depth[n] = np.float32(0.0)
         filled[n] = np.float32(0.0)
-    for c in cut.peaked:
-        gain = cut.mixture[k] * cut.scattering[c, k]
-        loss = cut.fraction[c, k] * cut.scattering[c, k]
+    for c in scaled.peaked:
+        gain = scaled.mixture[k] * scaled.scattering[c, k]
+        loss = scaled.fraction[c, k] * scaled.scattering[c, k]
         _add_scaled(count, gain, lit.sunward[c], filled)
         _add_scaled(count, loss - gain, lit.sunward[c], depth)
         _add_scaled(count, loss, lit.backward[c], depth)
@@ -100,24 +100,24 @@ def _split_peak(cut, k, count, lit, depth, light, filled):
 
 
 @kernel
-def _add_peak(cut, nodes, k, count, lit, light, filled, out):
-    """Share each sample's light between the channels of the two nodes around `filled`."""
-    constituents = cut.fraction.shape[0]
-    for j in range(cut.peaked.size):
-        c = cut.peaked[j]
-        channel = constituents + j * nodes.size
+def _add_peak(scaled, nodes, k, count, lit, light, filled, out):
+    """Share each sample's light between the phase functions of the two nodes around `filled`."""
+    constituents = scaled.fraction.shape[0]
+    for j in range(scaled.peaked.size):
+        c = scaled.peaked[j]
+        p = constituents + j * nodes.size
         # Light counts for all nodes below it and, in part, for the next.
-        total = cut.scattering[c, k] * _sum_products(count, lit.density[c], light)
+        total = scaled.scattering[c, k] * _sum_products(count, lit.density[c], light)
         for i in range(1, nodes.size):
-            beyond = cut.scattering[c, k] * _sum_ramps(
+            beyond = scaled.scattering[c, k] * _sum_ramps(
                 count, lit.density[c], light, filled, nodes[i - 1], nodes[i]
             )
-            out[channel, k] += total - beyond
+            out[p, k] += total - beyond
             total = beyond
-            channel += 1
+            p += 1
             if total == 0.0:
                 break
-        out[channel, k] += total
+        out[p, k] += total
 
 
 @kernel

@@ -7,10 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from skybake.errors import InputError
+from skybake.angles import cosine_between
+from skybake.errors import TooThickError
 from skybake.jit.arguments import Flat, flatten
 from skybake.jit.workers import ALL_CPUS, Workers
-from skybake.optics.legendre import Truncation, legendre_polynomials
+from skybake.optics.delta_m import ScaledMedium
+from skybake.optics.legendre import legendre_polynomials
 from skybake.optics.medium import Array
 from skybake.scattering.anderson import Anderson
 from skybake.scattering.fans import group_rays
@@ -21,11 +23,13 @@ from skybake.scattering.grid import (
     azimuths,
     build_grid,
     empty_field,
+    no_field,
     project,
-    vertical_depth,
+    thickest_depth,
 )
 from skybake.scattering.multiple import add_diffuse, allocate_scratch, side_by_side
 from skybake.scattering.ray import trace_rays
+from skybake.scattering.tables import Atmosphere
 from skybake.transport.samples import allocate_samples
 from skybake.transport.shells import altitude_shells
 from skybake.transport.trace import trace
@@ -54,15 +58,13 @@ ARC = math.radians(2.0)
 FIRST_ARC = math.radians(1.5)
 
 
-def solve_field(cut: Truncation, columns: Array, workers: Workers = ALL_CPUS) -> DiffuseField:
+def solve_field(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> DiffuseField:
     """Solve for the light that was scattered at least once.
 
     Parameters
     ----------
-    cut : Truncation
-        The atmosphere without forward peaks beyond `ORDER`.
-    columns : ndarray
-        Table of `build_columns`.
+    atmosphere : Atmosphere
+        Its medium, without forward peaks beyond `ORDER`, and its columns.
     workers : Workers, optional
         Who does the work.
 
@@ -73,8 +75,8 @@ def solve_field(cut: Truncation, columns: Array, workers: Workers = ALL_CPUS) ->
 
     Raises
     ------
-    InputError
-        If the iteration does not converge, in air that is optically too thick.
+    TooThickError
+        If the iteration does not converge, in an atmosphere that is optically too thick.
 
     Notes
     -----
@@ -90,18 +92,19 @@ def solve_field(cut: Truncation, columns: Array, workers: Workers = ALL_CPUS) ->
     M. L. Adams and E. W. Larsen, "Fast iterative methods for discrete-ordinates
     particle transport calculations", Prog. Nucl. Energy 40, 2002, section II.
     """
-    check_depth(cut)
-    grid = build_grid(cut)
+    scaled = atmosphere.scaled
+    check_depth(scaled)
+    grid = build_grid(scaled)
     coarse_grid = grid._replace(azimuth=azimuths(COARSE_ORDER))
-    traced = _trace_grid(cut, grid)
-    coarse_rays, rays = _fan_out(cut, coarse_grid, traced), _fan_out(cut, grid, traced)
-    first = _first_order(cut, columns, grid, workers)
+    traced = _trace_grid(scaled, grid)
+    coarse_rays, rays = _fan_out(scaled, coarse_grid, traced), _fan_out(scaled, grid, traced)
+    first = _first_order(atmosphere, grid, workers)
 
     def scatter(field: DiffuseField) -> DiffuseField:
-        return _scatter(cut, field, grid, rays, workers)
+        return _scatter(scaled, field, grid, rays, workers)
 
     def settle(new: DiffuseField, total: DiffuseField) -> DiffuseField:
-        return _settle(cut, new, total, coarse_grid, coarse_rays, workers)
+        return _settle(scaled, new, total, coarse_grid, coarse_rays, workers)
 
     new = lower_order(first, COARSE_ORDER)
     field = raise_order(settle(new, new), new, first)
@@ -120,25 +123,24 @@ def solve_field(cut: Truncation, columns: Array, workers: Workers = ALL_CPUS) ->
     raise _no_convergence(MAX_PASSES, TOLERANCE, float(change.max()))
 
 
-def check_depth(cut: Truncation) -> None:
-    """Refuse air that is too thick to be solved for.
+def check_depth(scaled: ScaledMedium) -> None:
+    """Refuse a medium that is too thick to be solved for.
 
     Raises
     ------
-    InputError
+    TooThickError
         If its vertical optical depth is above `MAX_DEPTH` at any wavelength.
     """
-    depth = vertical_depth(cut)
+    depth = thickest_depth(scaled.medium)
     if depth > MAX_DEPTH:
-        raise InputError(
-            "multiple scattering: optical depth of the air without forward peaks must be at most "
-            f"{MAX_DEPTH:g} at every wavelength for --method full, got {depth:.3g}; use probe "
-            "--method reference, or --method hillaire"
+        raise TooThickError(
+            "multiple scattering: optical depth of the atmosphere without forward peaks must be "
+            f"at most {MAX_DEPTH:g} at every wavelength, got {depth:.3g}"
         )
 
 
 def _settle(
-    cut: Truncation,
+    scaled: ScaledMedium,
     new: DiffuseField,
     total: DiffuseField,
     grid: Grid,
@@ -152,14 +154,14 @@ def _settle(
     sunlit = wavelengths * np.count_nonzero(grid.sun_angle < 0.5 * math.pi)
     state, previous, left = start, 0.0, 0.0
     for turn in range(MAX_COARSE_PASSES):
-        image = start + _state(_scatter(cut, _field(new, state), grid, rays, workers))
+        image = start + _state(_scatter(scaled, _field(new, state), grid, rays, workers))
         change = _relative(image - state, np.maximum(abs(image), abs(scale)), grid)
         if turn == 1:
             # The first step is not mixed yet: the ratio is what one scattering leaves.
             left = float(change[:sunlit].max()) / max(previous, 1e-30)
             left = min(max(left, 1e-3), 0.9999)
         state = mixing.step(state, image)
-        # In thick air a small change is not a small error.
+        # In a thick atmosphere a small change is not a small error.
         if turn > 0 and change.max() < max(COARSE_TOLERANCE * (1.0 - left) / left, LEAST_CHANGE):
             return _field(new, state)
         if not np.isfinite(change).all():
@@ -176,25 +178,28 @@ def _relative(change: Array, state: Array, grid: Grid) -> Array:
     return relative
 
 
-def _no_convergence(passes: int, tolerance: float, change: float) -> InputError:
-    return InputError(
+def _no_convergence(passes: int, tolerance: float, change: float) -> TooThickError:
+    return TooThickError(
         f"multiple scattering: must converge within {passes} passes to {tolerance:g}, "
-        f"got {change:.2g}; use probe --method reference, or --method hillaire"
+        f"got {change:.2g}"
     )
 
 
-def _first_order(cut: Truncation, columns: Array, grid: Grid, workers: Workers) -> DiffuseField:
+def _first_order(atmosphere: Atmosphere, grid: Grid, workers: Workers) -> DiffuseField:
     """Moments of the light scattered or reflected exactly once."""
-    base = cut._replace(peaked=cut.peaked[:0], phase=cut.medium.phase)
-    constituents = base.phase.shape[0]
-    dark = empty_field(cut, grid.altitude[:1], grid.sun_angle, 0)
-    shells = altitude_shells(cut.medium, FIRST_SHELLS)
-    field = empty_field(cut, grid.altitude, grid.sun_angle, ORDER)
+    scaled = atmosphere.scaled
+    without_peaks = atmosphere._replace(
+        scaled=scaled._replace(peaked=scaled.peaked[:0], phase=scaled.medium.phase),
+        shells=altitude_shells(scaled.medium, FIRST_SHELLS),
+        field=no_field(scaled),
+    )
+    constituents = scaled.medium.phase.shape[0]
+    field = empty_field(scaled, grid.altitude, grid.sun_angle, ORDER)
     degree = np.arange(ORDER + 1)
-    series = cut.moments * ((2 * degree + 1) / (4.0 * math.pi))[:, None]
+    series = scaled.moments * ((2 * degree + 1) / (4.0 * math.pi))[:, None]
     for i in range(grid.altitude.size):
-        rays = _rays_at(cut, grid, i)
-        light = trace_rays(base, shells, columns, dark, *rays.T, max_arc=FIRST_ARC, workers=workers)
+        rays = _rays_at(scaled, grid, i)
+        light = trace_rays(without_peaks, *rays.T, max_arc=FIRST_ARC, workers=workers)
         polynomials = legendre_polynomials(rays[:, 3], ORDER)
         radiance = light.diffuse
         for c in range(constituents):
@@ -203,13 +208,13 @@ def _first_order(cut: Truncation, columns: Array, grid: Grid, workers: Workers) 
     return field
 
 
-def _rays_at(cut: Truncation, grid: Grid, node: int) -> Array:
+def _rays_at(scaled: ScaledMedium, grid: Grid, node: int) -> Array:
     """Rays in all directions of an altitude's node for all suns, shape (ray, 4)."""
     mu, sun, azimuth = np.meshgrid(grid.mu[node], grid.sun_angle, grid.azimuth, indexing="ij")
     mu_s = np.cos(sun)
-    nu = mu * mu_s + np.sqrt(1.0 - mu**2) * np.sin(sun) * np.cos(azimuth)
+    nu = cosine_between(mu, np.sqrt(1.0 - mu**2), mu_s, np.sin(sun), azimuth)
     # A ray that starts on the ground itself must still see the sky.
-    r = np.full(mu.shape, cut.medium.r_bottom + max(grid.altitude[node], 1e-8))
+    r = np.full(mu.shape, scaled.medium.r_bottom + max(grid.altitude[node], 1e-8))
     return np.stack([r, mu, mu_s, nu], axis=-1).reshape(-1, 4)
 
 
@@ -228,40 +233,41 @@ class Batch(NamedTuple):
     samples: Flat
 
 
-def _trace_grid(cut: Truncation, grid: Grid) -> list[Batch]:
+def _trace_grid(scaled: ScaledMedium, grid: Grid) -> list[Batch]:
     """Trace the grid's directions; their samples serve every pass and every sun."""
-    shells = altitude_shells(cut.medium, SHELLS)
+    shells = altitude_shells(scaled.medium, SHELLS)
     batches = []
     for node in range(grid.altitude.size):
-        fans = group_rays(_rays_at(cut, grid, node))
+        fans = group_rays(_rays_at(scaled, grid, node))
         begin, end = 0, len(fans.starts)
         while begin < end:
-            samples = allocate_samples(cut.medium)
-            stop = trace(cut.medium, shells, ARC, fans.starts, begin, end, samples)
+            samples = allocate_samples(scaled.medium)
+            stop = trace(scaled.medium, shells, ARC, fans.starts, begin, end, samples)
             batches.append(Batch(node, flatten(fans), begin, stop, flatten(samples)))
             begin = stop
     return batches
 
 
-def _fan_out(cut: Truncation, grid: Grid, traced: list[Batch]) -> list[Batch]:
+def _fan_out(scaled: ScaledMedium, grid: Grid, traced: list[Batch]) -> list[Batch]:
     """Give traced directions the suns and azimuths of a grid."""
     nodes = range(grid.altitude.size)
-    fans = [flatten(group_rays(_rays_at(cut, grid, node))) for node in nodes]
+    fans = [flatten(group_rays(_rays_at(scaled, grid, node))) for node in nodes]
     return [batch._replace(fans=fans[batch.node]) for batch in traced]
 
 
 def _scatter(
-    cut: Truncation, field: DiffuseField, grid: Grid, batches: list[Batch], workers: Workers
+    scaled: ScaledMedium, field: DiffuseField, grid: Grid, batches: list[Batch], workers: Workers
 ) -> DiffuseField:
     """Scatter a field once more and transport it; the ground reflects its irradiance."""
-    nodes, rays, wavelengths = grid.altitude.size, math.prod(_shape(grid)), field.ground.shape[1]
-    out = np.zeros((nodes, rays, wavelengths), np.float32)
-    light = [flatten(each) for each in (field, side_by_side(field), cut.medium)]
+    nodes, wavelengths = grid.altitude.size, field.ground.shape[1]
+    out = np.zeros((nodes, math.prod(_shape(grid)), wavelengths), np.float32)
+    light = [flatten(each) for each in (field, side_by_side(field), scaled.medium)]
 
     def work(first: int, last: int) -> None:
         for batch in batches[first:last]:
             scratch = allocate_scratch(field, batch.fans.value)
-            add_diffuse(*light, *batch[1:], scratch, out[batch.node])
+            rays = batch.fans, batch.begin, batch.end, batch.samples
+            add_diffuse(*light, *rays, scratch, out[batch.node])
 
     workers.run_rows(len(batches), work)
     scattered = field._replace(

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from skybake.jit.kernel import kernel
-from skybake.sky.view import dusk_coordinate, sun_range
+from skybake.sky.table import dusk_coordinate, sun_range
 
 
 @kernel
@@ -39,61 +39,61 @@ def _keep_inside(i, size, out):
 
 
 @kernel
-def _channels(view):
-    """R, G and B with all lobes each."""
-    return 3 * view.curves.shape[1]
+def _node_size(folded):
+    """Values of one node: R, G and B with all curves each."""
+    return 3 * folded.curves.shape[1]
 
 
 @kernel
-def azimuth_count(view):
-    """Azimuths of a view's table."""
-    return view.table.shape[2] // _channels(view)
+def azimuth_count(folded):
+    """Azimuths of a table."""
+    return folded.values.shape[2] // _node_size(folded)
 
 
 @kernel
-def azimuth_weights(view, theta, phi, cosine, out):
+def azimuth_weights(folded, theta, phi, cosine, out):
     """Weights of four azimuths; returns the row of `fill_latitude` that holds the first."""
-    size = azimuth_count(view)
-    if view.zenith_first == 0.0:
+    size = azimuth_count(folded)
+    if folded.zenith_first == 0.0:
         return _cubic(phi / math.pi * (size - 1), size, out) + 1
-    middle, half = sun_range(view.sun_zenith, view.zenith_horizon, theta)
+    middle, half = sun_range(folded.source_zenith, folded.zenith_horizon, theta)
     x = dusk_coordinate(middle, half, cosine)
     return _keep_inside(_cubic(x * (size - 1), size, out), size, out) + 1
 
 
 @kernel
-def _latitude_weights(view, side, zenith, out):
+def _latitude_weights(folded, side, zenith, out):
     """Weights of four latitudes; at a table's edge the missing node is extrapolated."""
-    size = view.table.shape[1]
+    size = folded.values.shape[1]
     if side == 1:
-        span = math.pi - view.zenith_horizon
-        x = math.sqrt(max(zenith - view.zenith_horizon, 0.0) / span)
+        span = math.pi - folded.zenith_horizon
+        x = math.sqrt(max(zenith - folded.zenith_horizon, 0.0) / span)
     else:
-        span = view.zenith_horizon - view.zenith_first
-        x = 1.0 - math.sqrt(max(view.zenith_horizon - zenith, 0.0) / span)
+        span = folded.zenith_horizon - folded.zenith_first
+        x = 1.0 - math.sqrt(max(folded.zenith_horizon - zenith, 0.0) / span)
     return _keep_inside(_cubic(x * (size - 1), size, out), size, out)
 
 
 @kernel
-def fill_latitude(view, side, zenith, j_first, j_last, weights, out):
-    """Interpolate the table at one zenith angle into rows of `out`, (azimuth + 2) * channel.
+def fill_latitude(folded, side, zenith, j_first, j_last, weights, out):
+    """Interpolate the table at one zenith angle into rows of `out`, (azimuth + 2) * node size.
 
     Row j holds azimuth j - 1; the first and the last row mirror the neighbours of the
     sun's meridian, about which the sky is symmetric. At least four rows are filled.
     """
-    i = _latitude_weights(view, side, zenith, weights)
-    channels, azimuths = _channels(view), azimuth_count(view)
+    i = _latitude_weights(folded, side, zenith, weights)
+    size, azimuths = _node_size(folded), azimuth_count(folded)
     a, b = np.float32(weights[0]), np.float32(weights[1])
     c, d = np.float32(weights[2]), np.float32(weights[3])
-    begin, end = (max(j_first, 1) - 1) * channels, (min(j_last, azimuths + 1) - 1) * channels
-    at_a, at_b = view.table[side, i, begin:end], view.table[side, i + 1, begin:end]
-    at_c, at_d = view.table[side, i + 2, begin:end], view.table[side, i + 3, begin:end]
-    here = out[begin + channels : end + channels]
+    begin, end = (max(j_first, 1) - 1) * size, (min(j_last, azimuths + 1) - 1) * size
+    at_a, at_b = folded.values[side, i, begin:end], folded.values[side, i + 1, begin:end]
+    at_c, at_d = folded.values[side, i + 2, begin:end], folded.values[side, i + 3, begin:end]
+    here = out[begin + size : end + size]
     for k in range(here.size):
         here[k] = a * at_a[k] + b * at_b[k] + c * at_c[k] + d * at_d[k]
     if j_first == 0:
-        for k in range(channels):
-            out[k] = out[2 * channels + k]
+        for k in range(size):
+            out[k] = out[2 * size + k]
     if j_last == azimuths + 2:
-        for k in range(channels):
-            out[(azimuths + 1) * channels + k] = out[(azimuths - 1) * channels + k]
+        for k in range(size):
+            out[(azimuths + 1) * size + k] = out[(azimuths - 1) * size + k]

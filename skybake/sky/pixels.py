@@ -11,15 +11,15 @@ import numpy.typing as npt
 from skybake.jit.kernel import kernel
 from skybake.optics.medium import Array
 from skybake.sky.interpolation import azimuth_count, azimuth_weights, fill_latitude
-from skybake.sky.view import SkyView
+from skybake.sky.table import FoldedTable
 
 
 @kernel
-def _fill_places(view, middle, cosine, out):
-    """Write where in the lobes' curves pixels lie: scattering angles as floating indices."""
-    half = np.float32(0.5 * (view.curves.shape[0] - 1))
-    along_squared = math.sin(0.5 * (middle - view.sun_zenith)) ** 2
-    sines = math.sin(middle) * math.sin(view.sun_zenith)
+def _fill_places(folded, middle, cosine, out):
+    """Write where in the curves of the basis pixels lie: scattering angles as floating indices."""
+    half = np.float32(0.5 * (folded.curves.shape[0] - 1))
+    along_squared = math.sin(0.5 * (middle - folded.source_zenith)) ** 2
+    sines = math.sin(middle) * math.sin(folded.source_zenith)
     for j in range(out.size):
         # Squared sines of half the angle from the sun and of half of that from its opposite.
         near = min(along_squared + 0.5 * sines * (1.0 - cosine[j]), 1.0)
@@ -29,25 +29,25 @@ def _fill_places(view, middle, cosine, out):
 
 
 @kernel
-def _add_pixels(view, latitude, first, weights, share, place, out):
+def _add_pixels(folded, latitude, first, weights, share, place, out):
     """Add `share` of the radiance of pixels to `out`, shape (pixel, 3).
 
     A pixel lies among the rows of `latitude` from its own `first` on, by its four `weights`.
     """
-    last = view.curves.shape[0] - 2
+    last = folded.curves.shape[0] - 2
     scale = np.float32(share)
     for j in range(out.shape[0]):
         i = min(int(place[j]), last)
-        low, high, u = view.curves[i], view.curves[i + 1], place[j] - np.float32(i)
+        low, high, u = folded.curves[i], folded.curves[i + 1], place[j] - np.float32(i)
         a, b, c, d = weights[j, 0], weights[j, 1], weights[j, 2], weights[j, 3]
         at = first[j]
         at_a, at_b, at_c, at_d = latitude[at], latitude[at + 1], latitude[at + 2], latitude[at + 3]
         red = green = blue = np.float32(0.0)
         for q in range(low.size):
-            lobe = low[q] + u * (high[q] - low[q])
-            red += lobe * (a * at_a[0, q] + b * at_b[0, q] + c * at_c[0, q] + d * at_d[0, q])
-            green += lobe * (a * at_a[1, q] + b * at_b[1, q] + c * at_c[1, q] + d * at_d[1, q])
-            blue += lobe * (a * at_a[2, q] + b * at_b[2, q] + c * at_c[2, q] + d * at_d[2, q])
+            curve = low[q] + u * (high[q] - low[q])
+            red += curve * (a * at_a[0, q] + b * at_b[0, q] + c * at_c[0, q] + d * at_d[0, q])
+            green += curve * (a * at_a[1, q] + b * at_b[1, q] + c * at_c[1, q] + d * at_d[1, q])
+            blue += curve * (a * at_a[2, q] + b * at_b[2, q] + c * at_c[2, q] + d * at_d[2, q])
         out[j, 0] += scale * red
         out[j, 1] += scale * green
         out[j, 2] += scale * blue
@@ -58,14 +58,14 @@ class PixelScratch(NamedTuple):
 
     Attributes
     ----------
-    latitude : ndarray of float32, shape (side, (azimuth + 2) * 3 * lobe)
+    latitude : ndarray of float32, shape (side, (azimuth + 2) * 3 * curve)
         The table at one zenith angle, above the horizon and below it.
-    by_lobe : ndarray of float32, shape (side, azimuth + 2, 3, lobe)
+    by_curve : ndarray of float32, shape (side, azimuth + 2, 3, curve)
         The same numbers.
     row, weights : ndarray, shape (side, column) and (side, column, 4)
         Where between azimuths of the table pixels lie.
     angle, cosine, place : ndarray, shape (column,)
-        Angles from the sun's azimuth, and where in the lobes' curves pixels lie.
+        Angles from the sun's azimuth, and where in the curves of the basis pixels lie.
     theta, share, has_weights : ndarray, shape (side,)
         How a row of pixels is split, and whether it can keep weights for the next.
     four : ndarray of float64, shape (4,)
@@ -73,7 +73,7 @@ class PixelScratch(NamedTuple):
     """
 
     latitude: npt.NDArray[np.float32]
-    by_lobe: npt.NDArray[np.float32]
+    by_curve: npt.NDArray[np.float32]
     row: npt.NDArray[np.int64]
     weights: npt.NDArray[np.float32]
     angle: Array
@@ -85,14 +85,14 @@ class PixelScratch(NamedTuple):
     four: Array
 
 
-def allocate_pixels(view: SkyView, columns: int) -> PixelScratch:
+def allocate_pixels(folded: FoldedTable, columns: int) -> PixelScratch:
     """Make the work space for rows of so many pixels."""
-    lobes = view.curves.shape[1]
-    azimuths = view.table.shape[2] // (3 * lobes)
-    latitude = np.empty((2, (azimuths + 2) * 3 * lobes), np.float32)
+    curves = folded.curves.shape[1]
+    azimuths = folded.values.shape[2] // (3 * curves)
+    latitude = np.empty((2, (azimuths + 2) * 3 * curves), np.float32)
     return PixelScratch(
         latitude=latitude,
-        by_lobe=latitude.reshape(2, azimuths + 2, 3, lobes),
+        by_curve=latitude.reshape(2, azimuths + 2, 3, curves),
         row=np.empty((2, columns), np.int64),
         weights=np.empty((2, columns, 4), np.float32),
         angle=np.empty(columns),
@@ -106,12 +106,12 @@ def allocate_pixels(view: SkyView, columns: int) -> PixelScratch:
 
 
 @kernel
-def fill_directions(view, zenith, azimuth, footprint, first, last, scratch, out):
+def fill_directions(folded, zenith, azimuth, footprint, first, last, scratch, out):
     """Evaluate a sky at pixels.
 
     Parameters
     ----------
-    view : SkyView
+    folded : FoldedTable
         The table.
     zenith : ndarray of float64, shape (row, 1) or (row, column)
         Zenith angles of the pixels' centres; one column if a row shares its. [rad]
@@ -119,7 +119,7 @@ def fill_directions(view, zenith, azimuth, footprint, first, last, scratch, out)
         Azimuths relative to the sun; one row if all rows share it. [rad]
     footprint : ndarray of float64, shape (1, 1), (row, 1) or (row, column)
         Extents of the pixels in zenith angle, over which the edges of the planet and of
-        its air are smoothed by the share of the pixel on either side; one column if a row
+        its atmosphere are smoothed by the share of the pixel on either side; one column if a row
         shares its zenith angle. [rad]
     first, last : int
         Rows to fill.
@@ -128,15 +128,15 @@ def fill_directions(view, zenith, azimuth, footprint, first, last, scratch, out)
     out : ndarray of float32, shape (last - first, column, 3)
         Receives RGB.
     """
-    azimuths, columns = azimuth_count(view), out.shape[1]
-    latitude, by_lobe = scratch.latitude, scratch.by_lobe
+    azimuths, columns = azimuth_count(folded), out.shape[1]
+    latitude, by_curve = scratch.latitude, scratch.by_curve
     angle, cosine, place = scratch.angle, scratch.cosine, scratch.place
     row, weights = scratch.row, scratch.weights
     theta, share, four = scratch.theta, scratch.share, scratch.four
     has_weights = scratch.has_weights
     has_weights[:] = False
     shares_zenith, shares_azimuth = zenith.shape[1] == 1, azimuth.shape[0] == 1
-    keeps_weights = shares_azimuth and view.zenith_first == 0.0
+    keeps_weights = shares_azimuth and folded.zenith_first == 0.0
     is_mirrored = False
     last_row, last_column = footprint.shape[0] - 1, footprint.shape[1] - 1
     for i in range(first, last):
@@ -148,7 +148,7 @@ def fill_directions(view, zenith, azimuth, footprint, first, last, scratch, out)
         for begin in range(0, computed, span):
             middle = zenith[i, 0 if shares_zenith else begin]
             height = footprint[min(i, last_row), min(begin, last_column)]
-            _split_pixel(view, middle, height, theta, share)
+            _split_pixel(folded, middle, height, theta, share)
             for side in range(2):
                 if share[side] == 0.0:
                     continue
@@ -156,14 +156,16 @@ def fill_directions(view, zenith, azimuth, footprint, first, last, scratch, out)
                     has_weights[side] = True
                     kept = 0 if keeps_weights else begin
                     for j in range(kept, computed if keeps_weights else begin + span):
-                        row[side, j] = azimuth_weights(view, theta[side], angle[j], cosine[j], four)
+                        row[side, j] = azimuth_weights(
+                            folded, theta[side], angle[j], cosine[j], four
+                        )
                         for q in range(4):
                             weights[side, j, q] = four[q]
                 low = 0 if shares_zenith else row[side, begin]
                 high = azimuths + 2 if shares_zenith else low + 4
-                fill_latitude(view, side, theta[side], low, high, four, latitude[side])
+                fill_latitude(folded, side, theta[side], low, high, four, latitude[side])
             end = begin + span
-            _fill_places(view, middle, cosine[begin:end], place[begin:end])
+            _fill_places(folded, middle, cosine[begin:end], place[begin:end])
             pixels = out[i - first, begin:end]
             for j in range(span):
                 for k in range(3):
@@ -171,8 +173,8 @@ def fill_directions(view, zenith, azimuth, footprint, first, last, scratch, out)
             for side in range(2):
                 if share[side] > 0.0:
                     _add_pixels(
-                        view,
-                        by_lobe[side],
+                        folded,
+                        by_curve[side],
                         row[side, begin:end],
                         weights[side, begin:end],
                         share[side],
@@ -204,13 +206,13 @@ def _mirror(pixels, computed):
 
 
 @kernel
-def _split_pixel(view, theta, height, middle, share):
+def _split_pixel(folded, theta, height, middle, share):
     """Shares of a pixel above and below the horizon, and the zenith angle of each's middle."""
     low, high = theta - 0.5 * height, theta + 0.5 * height
-    begin = max(low, view.zenith_first) if view.zenith_first > 0.0 else low
-    end = min(high, view.zenith_horizon)
+    begin = max(low, folded.zenith_first) if folded.zenith_first > 0.0 else low
+    end = min(high, folded.zenith_horizon)
     share[0] = max(end - begin, 0.0) / height
     middle[0] = theta if share[0] > 0.999 else 0.5 * (begin + end)
-    begin = max(low, view.zenith_horizon)
+    begin = max(low, folded.zenith_horizon)
     share[1] = max(high - begin, 0.0) / height
     middle[1] = theta if share[1] > 0.999 else 0.5 * (begin + high)

@@ -1,1 +1,1 @@
-"""Straight rays through the air: geometry, density, shells, samples."""
+"""Straight rays through an atmosphere: geometry, density, shells, samples."""

@@ -44,6 +44,12 @@ def fill_column(medium, r, mu, length, steps, scratch, out):
     """
     for c in range(out.size):
         out[c] = 0.0
+    add_column(medium, r, mu, length, steps, scratch, out)
+
+
+@kernel
+def add_column(medium, r, mu, length, steps, scratch, out):
+    """Add the columns along a ray to `out`; parameters are those of `fill_column`."""
     for k in range(steps):
         start = length * (k / steps) ** 2
         step = length * ((k + 1) / steps) ** 2 - start

@@ -56,7 +56,7 @@ def shadow_interval(r, mu, mu_s, nu, r_bottom, t_first, t_last):
     r_bottom : float
         Radius of the planet. [km]
     t_first, t_last : float
-        Ends of the ray within the air; it does not enter the ground between. [km]
+        Ends of the ray within the atmosphere; it does not enter the ground between. [km]
 
     Returns
     -------

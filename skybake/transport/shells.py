@@ -1,17 +1,17 @@
-"""Altitudes at which rays are cut into steps, chosen from the air's profile."""
+"""Altitudes at which rays are cut into steps, chosen from the atmosphere's profile."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from skybake.optics.medium import Array, Medium, altitude_nodes
+from skybake.optics.medium import Array, Medium, altitude_nodes, vertical_columns
 
 SHELL_COUNT = 49
 """Shells of a ray that is looked along; 48 layers keep single scattering within 0.05 %."""
 
 
 def altitude_shells(medium: Medium, count: int = SHELL_COUNT) -> Array:
-    """Altitudes that divide the air into layers of like importance.
+    """Altitudes that divide the atmosphere into layers of like importance.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def altitude_shells(medium: Medium, count: int = SHELL_COUNT) -> Array:
 
 def _smallest_scale_height(medium: Medium, altitude: Array) -> float:
     """Column over peak density of the constituent that is most confined. [km]"""
-    column = np.asarray(np.trapezoid(medium.density, altitude, axis=0))
+    column = vertical_columns(medium)
     peak = medium.density.max(axis=0)
     present = peak > 0.0
     if not present.any():

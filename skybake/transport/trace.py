@@ -24,12 +24,12 @@ OPAQUE = 1e-9
 
 @kernel
 def ray_limits(medium, r, mu):
-    """Where a ray enters and leaves the air, and whether it ends on the ground.
+    """Where a ray enters and leaves the atmosphere, and whether it ends on the ground.
 
     Returns
     -------
     (float, float, bool)
-        First and last distance in the air, equal if it misses the air; whether
+        First and last distance in the atmosphere, equal if it misses that; whether
         the ray ends on the ground. [km]
     """
     first = 0.0
@@ -56,7 +56,7 @@ def trace(medium, shells, max_arc, rays, begin, end, samples):
     max_arc : float
         Largest angle, seen from the planet's centre, that a step may cover. [rad]
     rays : ndarray of float64, shape (ray, 2)
-        Start of each ray, inside the air or outside [km], and cosine of its zenith angle.
+        Start of each ray, inside the atmosphere or outside [km], and cosine of its zenith angle.
     begin, end : int
         Rays to be traced.
     samples : Samples

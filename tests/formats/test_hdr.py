@@ -25,7 +25,7 @@ def test_every_value_is_within_half_a_step_of_eight_bits_under_the_largest(tmp_p
 
 
 def test_a_map_is_on_average_as_bright_as_what_was_baked(tmp_path):
-    """Truncation, as the library does it, would lose 0.3 %."""
+    """ScaledMedium, as the library does it, would lose 0.3 %."""
     rows = np.random.default_rng(0).uniform(1.0, 4.0, (64, 128, 3)).astype(np.float32)
     write_map(tmp_path / "a.hdr", rows)
 

@@ -102,7 +102,7 @@ def solved_illuminance(scene):
     both is what a map holds.
     """
     air = scene.sky.atmosphere
-    medium = air.cut.medium
+    medium = air.scaled.medium
     mu_s = math.sin(scene.sky.sun_elevation)
     column, sky = np.zeros(air.columns.shape[2]), np.empty(medium.ground_albedo.size)
     fill_ground_irradiance(air.field, mu_s, np.empty(4), sky)

@@ -7,8 +7,8 @@ from skybake.errors import InputError
 from skybake.jit import workers
 from skybake.optics.medium import ALTITUDE_NODES, Medium, altitude_nodes
 from skybake.optics.phase import scattering_angles
-from skybake.reference import irradiance, radiance, single_scattering
 from skybake.reference.air import air_at
+from skybake.reference.estimate import irradiance, radiance, single_scattering
 from skybake.reference.guide import make_guide
 from skybake.reference.paths import mean_irradiance
 from skybake.reference.rays import transmittance_to_space

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from skybake.optics.phase import eval_phase, scattering_angles
+from skybake.scattering.atmosphere import build_atmosphere
 from skybake.scattering.ray import trace_rays
 from tests.kernels import distance_to_entry, fill_sun_column, fill_transmittance
-from tests.media import RADIUS, plain_medium
-from tests.skies import bare_sky
+from tests.media import RADIUS, cosine_to_sun, plain_medium
 from tests.truth import henyey_greenstein
 
 DEPTHS = np.array([0.1, 1.0])
@@ -30,8 +30,8 @@ PHASES = {
 
 
 @functools.cache
-def sky_of(phase, method):
-    return bare_sky(furnace(PHASES[phase]), 0.0, 0.0, method)
+def air_of(phase, method):
+    return build_atmosphere(furnace(PHASES[phase]), method)
 
 
 def suns():
@@ -48,20 +48,19 @@ def suns():
     return np.sin(elevation).ravel(), azimuth.ravel(), solid_angle.ravel()
 
 
-def radiance_under_even_light(sky, h, mu):
+def radiance_under_even_light(air, h, mu):
     """Radiance seen along a ray if 1 W m^-2 sr^-1 falls on the air from everywhere."""
     mu_s, azimuth, solid_angle = suns()
     r = RADIUS + h
-    nu = mu * mu_s + np.sqrt((1.0 - mu**2) * (1.0 - mu_s**2)) * np.cos(azimuth)
+    nu = cosine_to_sun(mu, mu_s, azimuth)
     same = np.full(mu_s.shape, r), np.full(mu_s.shape, mu)
-    air = sky.atmosphere
-    light = trace_rays(*air[:4], *same, mu_s, nu)
-    scattered = (light.single * eval_phase(air.cut.phase, nu)).sum(axis=1) + light.diffuse
+    light = trace_rays(air, *same, mu_s, nu)
+    scattered = (light.single * eval_phase(air.scaled.phase, nu)).sum(axis=1) + light.diffuse
     through = np.zeros(DEPTHS.size)
     if distance_to_entry(r, mu, RADIUS) == math.inf:
         column = np.empty(1)
-        fill_sun_column(air.columns, RADIUS, sky.medium.r_top, r, mu, column)
-        fill_transmittance(sky.medium.extinction, column, through)
+        fill_sun_column(air.columns, RADIUS, air.medium.r_top, r, mu, column)
+        fill_transmittance(air.medium.extinction, column, through)
     return (solid_angle @ scattered)[: DEPTHS.size] + through
 
 
@@ -73,5 +72,5 @@ def test_suns_fill_the_sphere():
 @pytest.mark.parametrize("mu", [1.0, 0.3, -0.1, -0.9])
 @pytest.mark.parametrize("phase", [pytest.param("isotropic", marks=pytest.mark.slow), "forward"])
 def test_white_furnace_is_even_within_one_percent(phase, mu, h):
-    radiance = radiance_under_even_light(sky_of(phase, "full"), h, mu)
+    radiance = radiance_under_even_light(air_of(phase, "full"), h, mu)
     np.testing.assert_allclose(radiance, 1.0, atol=0.01)

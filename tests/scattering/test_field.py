@@ -7,14 +7,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.special import sph_harm_y
 
-from skybake.optics.legendre import keep_peaks
+from skybake.optics.delta_m import keep_unscaled
 from skybake.scattering.grid import empty_field, sun_angles
 from skybake.scattering.harmonics import build_harmonics, fill_harmonics
 from tests.kernels import fast_acos, log_twilight, sun_weights
 from tests.media import plain_medium
 
 ANGLES = sun_angles(math.radians(118.0))
-FIELD = empty_field(keep_peaks(plain_medium()), np.array([0.0, 100.0]), ANGLES, 0)
+FIELD = empty_field(keep_unscaled(plain_medium()), np.array([0.0, 100.0]), ANGLES, 0)
 
 
 @numba.njit

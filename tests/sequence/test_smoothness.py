@@ -8,7 +8,7 @@ import pytest
 from skybake.image.scene import Scene
 from skybake.image.settings import map_settings
 from skybake.preset import load_preset
-from skybake.sky.view import TWILIGHT_ELEVATION
+from skybake.sky.table import TWILIGHT_ELEVATION
 
 ZENITH = np.radians([0.0, 30.0, 60.0, 75.0, 80.0, 85.0, 88.0, 89.0, 89.5, 89.8, 89.95, 91.0])
 AZIMUTH = np.radians([0.0, 1.0, 5.0, 20.0, 60.0, 90.0, 135.0, 180.0])

@@ -4,15 +4,16 @@ import numpy as np
 import pytest
 
 from skybake.preset import load_preset
-from skybake.sky.sky import Sky
-from skybake.sky.sun import SunDisc
+from skybake.sky.disc import Disc
+from skybake.sky.sky import WAVELENGTHS, Sky
 
 AU = 149_597_870.7
 SUN = 695_700.0
 
 
 def disc(preset="earth", elevation=30.0, altitude=0.0):
-    return SunDisc(Sky(load_preset(preset), math.radians(elevation), altitude, method="hillaire"))
+    sky = Sky(load_preset(preset), math.radians(elevation), altitude, method="hillaire")
+    return Disc(sky.skylight, sky.source)
 
 
 @pytest.mark.parametrize(("preset", "distance"), [("earth", 1.0), ("mars", 1.5237)])
@@ -45,7 +46,7 @@ def test_limb_is_darker_and_redder_than_the_centre():
     centre, limb = sun.bare_radiance(distance)
     ratio = limb / centre
     assert (np.diff(ratio) > 0.0).all()
-    assert np.interp(550.0, sun._sky.wavelengths, ratio) == pytest.approx(0.40, abs=0.06)
+    assert np.interp(550.0, WAVELENGTHS, ratio) == pytest.approx(0.40, abs=0.06)
 
 
 def test_nothing_shines_beyond_the_edge():

@@ -1,4 +1,4 @@
-"""Phase functions as sums of a few curves that all wavelengths share.
+"""A basis of phase functions: a few curves that all wavelengths share, and sums of them.
 
 The sky table is folded from wavelengths into RGB before its phase functions
 are applied per pixel. That is exact if each phase function is a sum of curves
@@ -19,14 +19,14 @@ TOLERANCE = 1.5e-3
 """Largest error of a phase function, relative to the rms of its group at that angle."""
 
 
-class Lobes(NamedTuple):
+class PhaseBasis(NamedTuple):
     """Shared curves and the weights that restore each phase function.
 
     Attributes
     ----------
-    curves : ndarray of float64, shape (lobe, SCATTERING_ANGLES)
+    curves : ndarray of float64, shape (curve, SCATTERING_ANGLES)
         The first is 1 everywhere and carries what has no phase function. [sr⁻¹]
-    weights : ndarray of float64, shape (channel, wavelength, lobe)
+    weights : ndarray of float64, shape (phase function, wavelength, curve)
         ``weights @ curves`` are the phase functions.
     """
 
@@ -34,23 +34,23 @@ class Lobes(NamedTuple):
     weights: Array
 
 
-def split_phase(
+def build_phase_basis(
     phase: Array, groups: Sequence[Sequence[int]], tolerance: float = TOLERANCE
-) -> Lobes:
+) -> PhaseBasis:
     """Split phase functions into the fewest shared curves.
 
     Parameters
     ----------
-    phase : ndarray of float64, shape (channel, SCATTERING_ANGLES, wavelength)
+    phase : ndarray of float64, shape (phase function, SCATTERING_ANGLES, wavelength)
         Phase functions. [sr⁻¹]
     groups : sequence of sequences of int
-        Channels that are alike, such as those of one constituent; each is in one.
+        Phase functions that are alike, such as those of one constituent; each is in one.
     tolerance : float, optional
         Largest error at any angle and wavelength, relative to the group's rms there.
 
     Returns
     -------
-    Lobes
+    PhaseBasis
         By principal components of each group's functions relative to their rms,
         so that the sides count as much as a peak that is a thousand times higher.
     """
@@ -69,23 +69,23 @@ def split_phase(
         values, vectors = np.linalg.eigh(relative.T @ relative)
         vectors = vectors[:, np.argsort(values)[::-1]]
         for rank in range(1, values.size + 1):
-            basis = vectors[:, :rank]
-            if np.abs(relative @ basis @ basis.T - relative).max() <= tolerance:
+            kept = vectors[:, :rank]
+            if np.abs(relative @ kept @ kept.T - relative).max() <= tolerance:
                 break
-        curves.append((relative @ basis * scale).T)
-        blocks.append((group, count, basis))
+        curves.append((relative @ kept * scale).T)
+        blocks.append((group, count, kept))
         count += rank
     weights = np.zeros((phase.shape[0], wavelengths, count))
-    for group, first, basis in blocks:
-        block = basis.reshape(len(group), wavelengths, -1)
+    for group, first, kept in blocks:
+        block = kept.reshape(len(group), wavelengths, -1)
         weights[list(group), :, first : first + block.shape[2]] = block
-    return Lobes(np.concatenate(curves), weights)
+    return PhaseBasis(np.concatenate(curves), weights)
 
 
-def pad_lobes(lobes: Lobes) -> Lobes:
+def pad_basis(basis: PhaseBasis) -> PhaseBasis:
     """Add curves of zeros until their number is a multiple of `LANES`."""
-    missing = -len(lobes.curves) % LANES
-    return Lobes(
-        np.pad(lobes.curves, ((0, missing), (0, 0))),
-        np.pad(lobes.weights, ((0, 0), (0, 0), (0, missing))),
+    missing = -len(basis.curves) % LANES
+    return PhaseBasis(
+        np.pad(basis.curves, ((0, missing), (0, 0))),
+        np.pad(basis.weights, ((0, 0), (0, 0), (0, missing))),
     )

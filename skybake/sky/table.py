@@ -1,7 +1,7 @@
 """The sky around one observer as a table.
 
-The table holds, for directions around the observer, the RGB that each lobe of
-`skybake.optics.lobes` multiplies. What it interpolates is therefore smooth even
+The table holds, for directions around the observer, the RGB that each curve of a
+basis of phase functions multiplies. What it interpolates is therefore smooth even
 where a phase function has a peak; the peak is applied per pixel. Directions
 are split at the planet's horizon and, seen from space, at the top of the
 atmosphere, and nothing is interpolated across these edges.
@@ -36,7 +36,7 @@ HIGH_DIP = math.radians(4.0)
 """Dip of the horizon beyond which the planet's shadow shows an edge too sharp for few azimuths."""
 
 DUSK = -0.03
-"""Cosine of the sun's zenith angle, where a view from space ends, at which nodes are densest:
+"""Cosine of the sun's zenith angle, where a ray from space ends, at which nodes are densest:
 just behind the terminator."""
 
 DUSK_WIDTH = 0.04
@@ -47,13 +47,13 @@ EDGE = 1e-7
 """Angle by which the tables stay away from the horizon itself. [rad]"""
 
 
-class SkyView(NamedTuple):
-    """A sky for one observer and one sun, folded into a colour space.
+class FoldedTable(NamedTuple):
+    """The light of one source around one observer, folded into a colour space.
 
     Attributes
     ----------
     zenith_first : float
-        Zenith angle at which the air begins: 0 inside it, beyond 0 from space. [rad]
+        Zenith angle at which the atmosphere begins: 0 inside it, beyond 0 from space. [rad]
     zenith_horizon : float
         Zenith angle of the planet's horizon. [rad]
     sun_zenith : float
@@ -62,47 +62,28 @@ class SkyView(NamedTuple):
         Above the horizon and below it; azimuths of `table_directions`, from the sun's
         to the opposite one; channels are R, G and B with all lobes each.
     curves : ndarray of float32, shape (SCATTERING_ANGLES, lobe)
-        Lobes over the scattering angle.
+        PhaseBasis over the scattering angle.
     """
 
     zenith_first: float
     zenith_horizon: float
-    sun_zenith: float
-    table: Table
+    source_zenith: float
+    values: Table
     curves: Table
 
 
 def horizon_angles(r: float, r_bottom: float, r_top: float) -> tuple[float, float]:
-    """Zenith angles at which the air begins and at which the ground begins. [rad]"""
+    """Zenith angles at which the atmosphere begins and at which the ground begins. [rad]"""
     first = math.pi - math.asin(r_top / r) if r > r_top else 0.0
     return first, math.pi - math.asin(min(1.0, r_bottom / r))
 
 
 def ray_azimuths(sun_elevation: float, zenith_horizon: float) -> int:
-    """Azimuths of rays, from which `resample_azimuths` makes those of a table inside the air."""
+    """How many azimuths of rays tell those of a table inside the atmosphere."""
     dip = zenith_horizon - math.pi / 2.0
     if sun_elevation > TWILIGHT_ELEVATION + dip:
         return RAY_AZIMUTHS
     return RAY_AZIMUTHS_TWILIGHT if dip < HIGH_DIP else AZIMUTHS
-
-
-def resample_azimuths(table: Array, azimuths: int) -> Array:
-    """Evaluate the cosine series through the azimuths of a table at others.
-
-    Parameters
-    ----------
-    table : ndarray of float64, shape (side, latitude, azimuth, channel)
-        At equal distances from 0 to pi.
-    azimuths : int
-        How many to have instead, at equal distances too.
-    """
-    last = table.shape[2] - 1
-    order = np.arange(last + 1)
-    ends_halved = np.where((order == 0) | (order == last), 0.5, 1.0)
-    analysis = 2.0 / last * np.cos(math.pi / last * np.outer(order, order)) * ends_halved
-    synthesis = np.cos(np.outer(np.linspace(0.0, math.pi, azimuths), order)) * ends_halved
-    resampled: Array = synthesis @ analysis @ table
-    return resampled
 
 
 def table_directions(
@@ -147,9 +128,9 @@ def _dusk_azimuths(sun_zenith: float, zenith_horizon: float, zenith: Array, azim
 
 @kernel
 def sun_range(sun_zenith, zenith_horizon, zenith):
-    """Cosine of the sun's zenith angle where views of a zenith angle end: middle and half range.
+    """Cosine of the sun's zenith angle where rays of a zenith angle end: middle and half range.
 
-    At the azimuth phi from the sun it is middle + half * cos(phi). A view ends on
+    At the azimuth phi from the sun it is middle + half * cos(phi). A ray ends on
     the ground, or at its point closest to the planet.
     """
     sine, cosine = math.sin(zenith), math.cos(zenith)

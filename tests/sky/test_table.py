@@ -9,7 +9,8 @@ import pytest
 from skybake.image.scene import Scene
 from skybake.image.settings import map_settings
 from skybake.preset import load_preset
-from skybake.sky.view import AZIMUTHS, horizon_angles
+from skybake.sky.spectral_table import fold_table
+from skybake.sky.table import AZIMUTHS, horizon_angles
 from tests.skies import view_cosines
 
 ELEVATIONS = (
@@ -48,7 +49,7 @@ def by_rays(made, zenith, azimuth):
 def views(made, count=300):
     """Zenith angles and azimuths in degrees: everywhere, at the horizon, about the sun."""
     random = np.random.default_rng(7)
-    horizon = 180.0 - math.degrees(math.asin(made.sky.medium.r_bottom / made.sky.r))
+    horizon = 180.0 - math.degrees(math.asin(made.sky.medium.r_bottom / made.sky.skylight.radius))
     sun = 90.0 - math.degrees(made.sky.sun_elevation)
     third = count // 3
     zenith = np.concatenate(
@@ -88,8 +89,10 @@ def test_rays_at_few_azimuths_tell_all_others(monkeypatch, preset, elevation, al
     made = scene(preset, elevation, altitude)
     zenith, azimuth, _ = views(made)
     few = by_table(made, zenith, azimuth)
-    monkeypatch.setattr("skybake.sky.sky.ray_azimuths", lambda *_: AZIMUTHS)
-    monkeypatch.setitem(made.__dict__, "view", made.sky.view(made.rgb_weights))
+    monkeypatch.setattr("skybake.sky.spectral_table.ray_azimuths", lambda *_: AZIMUTHS)
+    light = made.sky.skylight
+    many = fold_table(light.spectral_table(made.sky.source), light.basis, made.rgb_weights)
+    monkeypatch.setitem(made.__dict__, "view", many)
     np.testing.assert_allclose(few, by_table(made, zenith, azimuth), rtol=tolerance)
 
 

@@ -1,4 +1,4 @@
-"""The sun's disc: its size, its darkening toward the limb, and the air in front of it."""
+"""The disc of a source: its size, its darkening toward the limb, and what is in front of it."""
 
 from __future__ import annotations
 
@@ -8,37 +8,42 @@ import numpy as np
 
 from skybake.jit.kernel import kernel
 from skybake.optics.medium import Array
-from skybake.optics.spectrum import limb_darkening
 from skybake.scattering.transmittance import fill_sun_column
-from skybake.sky.sky import Sky
+from skybake.sky.skylight import Skylight
+from skybake.sky.source import Source
 from skybake.transport.geometry import distance_to_entry, radius_at
 
 RINGS = 24
 SPOKES = 96
 
 
-class SunDisc:
-    """The disc of a sky's sun, as seen by its observer.
+class Disc:
+    """The disc of a source, as seen by an observer.
 
     Parameters
     ----------
-    sky : Sky
-        The sky that the sun shines through.
+    skylight : Skylight
+        The observer, and the atmosphere that the source shines through.
+    source : Source
+        The source.
 
     Attributes
     ----------
+    source : Source
+        As given.
     angular_radius : float
         [rad]
     """
 
-    def __init__(self, sky: Sky) -> None:
-        self._sky = sky
-        self._zenith = math.pi / 2.0 - sky.sun_elevation
-        self.angular_radius = sky.planet.star.angular_radius
-        self._darkening = limb_darkening(sky.planet.star, sky.wavelengths)
+    def __init__(self, skylight: Skylight, source: Source) -> None:
+        self._skylight = skylight
+        self.source = source
+        self.angular_radius = source.angular_radius
 
-    def radiance_per_irradiance(self, zenith: Array, distance: Array) -> Array:
-        """Radiance of points of the disc per unit irradiance above the air.
+    def radiance_per_irradiance(
+        self, zenith: Array, distance: Array, azimuth: Array | None = None
+    ) -> Array:
+        """Radiance of points of the disc per unit irradiance above the atmosphere.
 
         Parameters
         ----------
@@ -46,19 +51,32 @@ class SunDisc:
             Zenith angles. [rad]
         distance : ndarray of float64, shape (n,)
             Angles from the disc's centre; beyond its edge the radiance is 0. [rad]
+        azimuth : ndarray of float64, shape (n,), optional
+            Compass bearings; only where the source has an occluder are they needed. [rad]
 
         Returns
         -------
         ndarray of float64, shape (n, wavelength)
             [sr⁻¹]
+
+        Raises
+        ------
+        ValueError
+            If the source has an occluder and no azimuths are given.
         """
-        return self.bare_radiance(distance) * self.transmittance(zenith)
+        radiance: Array = self.bare_radiance(distance) * self.transmittance(zenith)
+        occluder = self.source.occluder
+        if occluder is None:
+            return radiance
+        if azimuth is None:
+            raise ValueError("azimuth: must be given for a source with an occluder")
+        return radiance * occluder.visible_share(azimuth, zenith)[:, None]
 
     def bare_radiance(self, distance: Array) -> Array:
-        """Radiance without air in front of it; its integral over the disc is 1. [sr⁻¹]"""
+        """Radiance with nothing in front; its integral over the disc is 1. [sr⁻¹]"""
         sine = np.sin(distance) / math.sin(self.angular_radius)
         mu = np.sqrt(np.maximum(1.0 - sine**2, 0.0))[:, None]
-        u, v = self._darkening
+        u, v = self.source.limb_darkening
         profile = 1.0 - u * (1.0 - mu) - v * (1.0 - mu * mu)
         mean = 1.0 - u / 3.0 - v / 2.0
         area = math.pi * math.sin(self.angular_radius) ** 2
@@ -76,33 +94,38 @@ class SunDisc:
         -------
         ndarray of float64, shape (n, wavelength)
         """
-        sky = self._sky
-        columns = np.empty((zenith.size, sky.medium.extinction.shape[0]))
+        atmosphere, radius = self._skylight.atmosphere, self._skylight.radius
+        medium = atmosphere.medium
+        columns = np.empty((zenith.size, medium.extinction.shape[0]))
         visible = np.empty(zenith.size, np.bool_)
-        fill_sight_columns(
-            sky.medium, sky.atmosphere.columns, sky.r, np.cos(zenith), columns, visible
-        )
-        transmittance: Array = np.exp(-columns @ sky.medium.extinction)
+        fill_sight_columns(medium, atmosphere.columns, radius, np.cos(zenith), columns, visible)
+        transmittance: Array = np.exp(-columns @ medium.extinction)
         return np.where(visible[:, None], transmittance, 0.0)
 
     def irradiance_per_irradiance(self) -> tuple[Array, Array]:
-        """Direct irradiance per unit irradiance above the air.
+        """Direct irradiance per unit irradiance above the atmosphere.
 
         Returns
         -------
         normal, horizontal : ndarray of float64, shape (wavelength,)
-            On a plane that faces the sun's centre and on a horizontal one, by
-            quadrature over the part of the disc that is not behind the planet.
+            On a plane that faces the source's centre and on a horizontal one, by
+            quadrature over the part of the disc that nothing hides.
         """
         radius = (np.arange(RINGS) + 0.5) / RINGS * self.angular_radius
         spoke = 2.0 * math.pi * (np.arange(SPOKES) + 0.5) / SPOKES
         distance, spoke = (grid.ravel() for grid in np.meshgrid(radius, spoke, indexing="ij"))
-        cosine = np.cos(distance) * math.cos(self._zenith) - np.sin(distance) * math.sin(
-            self._zenith
-        ) * np.cos(spoke)
+        # Spokes are counted from the one that points away from the zenith.
+        mu, sine = math.cos(self.source.zenith), math.sin(self.source.zenith)
+        cosine = np.cos(distance) * mu - np.sin(distance) * sine * np.cos(spoke)
+        zenith = np.arccos(np.clip(cosine, -1.0, 1.0))
         weight = np.sin(distance)[:, None] * self.bare_radiance(distance)
         weight /= weight.sum(axis=0)
-        light = weight * self.transmittance(np.arccos(np.clip(cosine, -1.0, 1.0)))
+        light = weight * self.transmittance(zenith)
+        occluder = self.source.occluder
+        if occluder is not None:
+            away = np.cos(distance) * sine + np.sin(distance) * mu * np.cos(spoke)
+            beside = np.arctan2(np.sin(distance) * np.sin(spoke), away)
+            light *= occluder.visible_share(self.source.azimuth + beside, zenith)[:, None]
         horizontal = (light * np.maximum(cosine, 0.0)[:, None]).sum(axis=0)
         return light.sum(axis=0), horizontal
 

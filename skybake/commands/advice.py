@@ -1,0 +1,12 @@
+"""What else a user can try, behind a message that says what is wrong."""
+
+from __future__ import annotations
+
+from skybake.errors import SkybakeError, TooThickError
+
+
+def advised(error: SkybakeError) -> str:
+    """Return an error's message, and which options help if there are any."""
+    if isinstance(error, TooThickError):
+        return f"{error}; use probe --method reference, or --method hillaire"
+    return str(error)

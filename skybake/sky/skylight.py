@@ -1,0 +1,148 @@
+"""The light of the sky that reaches an observer."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from skybake.errors import InputError
+from skybake.jit.workers import ALL_CPUS, Workers
+from skybake.optics.medium import Array
+from skybake.optics.phase import eval_phase
+from skybake.optics.phase_basis import PhaseBasis
+from skybake.scattering.ray import RayLight, trace_rays
+from skybake.scattering.tables import Atmosphere
+from skybake.sky.observer import Observer
+from skybake.sky.source import Source
+from skybake.sky.spectral_table import SpectralTable, table_geometry
+
+
+class Skylight:
+    """Radiance of atmosphere and ground from any direction, for one observer and any sources.
+
+    Parameters
+    ----------
+    atmosphere : Atmosphere
+        What is lit.
+    observer : Observer
+        Who looks.
+    sources : sequence of Source
+        What lights it; the light of several adds up.
+    workers : Workers, optional
+        Who does the work.
+
+    Attributes
+    ----------
+    atmosphere, observer, sources, workers
+        As given.
+    radius : float
+        Distance of the observer from the planet's centre. [km]
+    """
+
+    def __init__(
+        self,
+        atmosphere: Atmosphere,
+        observer: Observer,
+        sources: Sequence[Source],
+        *,
+        workers: Workers = ALL_CPUS,
+    ) -> None:
+        self.atmosphere = atmosphere
+        self.observer = observer
+        self.sources = tuple(sources)
+        self.workers = workers
+        self.radius = observer.radius(atmosphere.medium)
+
+    def radiance(self, directions: Array) -> Array:
+        """Radiance by all sources, without their own discs.
+
+        Parameters
+        ----------
+        directions : array_like, shape (..., 3)
+            Away from the observer, of any length; +Y up, -Z north, +X east.
+
+        Returns
+        -------
+        ndarray of float64, shape (..., wavelength)
+            Each integrated along its own ray. [W m⁻² sr⁻¹ nm⁻¹]
+
+        Raises
+        ------
+        InputError
+            If a direction has no length or is not finite.
+        """
+        unit = unit_directions(directions)
+        wavelengths = self.atmosphere.medium.ground_albedo.size
+        radiance = np.zeros((*unit.shape[:-1], wavelengths))
+        for source in self.sources:
+            nu = unit @ source.direction
+            radiance += self.radiance_per_irradiance(source, unit[..., 1], nu) * source.irradiance
+        return radiance
+
+    def radiance_per_irradiance(self, source: Source, mu: Array, nu: Array) -> Array:
+        """Radiance per unit irradiance of one source above the atmosphere.
+
+        Parameters
+        ----------
+        source : Source
+            What lights the atmosphere.
+        mu, nu : ndarray of float64, of the same shape
+            Cosines of the zenith angle of a direction and of its angle to the source.
+
+        Returns
+        -------
+        ndarray of float64, shape (..., wavelength)
+            [sr⁻¹]
+        """
+        nu = np.clip(nu, -1.0, 1.0)
+        light = self._light(source, mu.ravel(), nu.ravel())
+        phase = eval_phase(self.phase, nu.ravel())
+        radiance: Array = (light.single * phase).sum(axis=1) + light.diffuse
+        return radiance.reshape(*mu.shape, -1)
+
+    def spectral_table(self, source: Source) -> SpectralTable:
+        """Trace the rays by which pixels know the light of one source."""
+        medium = self.atmosphere.medium
+        geometry = table_geometry(self.radius, medium.r_bottom, medium.r_top, source.zenith)
+        return SpectralTable(
+            geometry, self._light(source, geometry.mu.ravel(), geometry.nu.ravel())
+        )
+
+    @property
+    def phase(self) -> Array:
+        """Phase functions of the light that is scattered once, (phase function, angle, wavelength).
+
+        At `skybake.optics.phase.scattering_angles`. [sr⁻¹]
+        """
+        return self.atmosphere.scaled.phase[..., : self.atmosphere.medium.ground_albedo.size]
+
+    @property
+    def basis(self) -> PhaseBasis:
+        """Curves that the phase functions are sums of."""
+        return self.atmosphere.basis
+
+    def _light(self, source: Source, mu: Array, nu: Array) -> RayLight:
+        """Light along rays per unit irradiance, of the medium's own wavelengths."""
+        light = trace_rays(self.atmosphere, *self._rays(source, mu, nu), workers=self.workers)
+        count = self.atmosphere.medium.ground_albedo.size
+        return RayLight(light.single[..., :count], light.diffuse[..., :count])
+
+    def _rays(self, source: Source, mu: Array, nu: Array) -> tuple[Array, Array, Array, Array]:
+        return np.full(mu.shape, self.radius), mu, np.full(mu.shape, source.mu), nu
+
+
+def unit_directions(directions: Array) -> Array:
+    """Scale vectors to length 1, shape (..., 3).
+
+    Raises
+    ------
+    InputError
+        If one has no length or is not finite.
+    """
+    directions = np.asarray(directions, dtype=float)
+    length = np.linalg.norm(directions, axis=-1, keepdims=True)
+    if not (np.isfinite(length).all() and (length > 0.0).all()):
+        raise InputError("directions: must be finite and longer than 0")
+    unit: Array = directions / length
+    return unit
