@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from skybake.baking import Baked, bake
     from skybake.errors import SkybakeError
     from skybake.image.settings import Encoding, Lighting, MapSettings, View, map_settings
+    from skybake.pipeline import Pipeline, Sky
     from skybake.preset import load_preset
     from skybake.projection import Cubemap, Equirect, Fisheye, Perspective
-    from skybake.sky.sky import Sky
 
 __all__ = [
     "Baked",
@@ -28,6 +28,7 @@ __all__ = [
     "Lighting",
     "MapSettings",
     "Perspective",
+    "Pipeline",
     "Sky",
     "SkybakeError",
     "View",
@@ -46,7 +47,8 @@ _HOMES = {
     "Lighting": "skybake.image.settings",
     "MapSettings": "skybake.image.settings",
     "Perspective": "skybake.projection",
-    "Sky": "skybake.sky.sky",
+    "Pipeline": "skybake.pipeline",
+    "Sky": "skybake.pipeline",
     "SkybakeError": "skybake.errors",
     "View": "skybake.image.settings",
     "bake": "skybake.baking",

@@ -31,20 +31,20 @@ def direction_from_angles(azimuth: npt.ArrayLike, elevation: npt.ArrayLike) -> A
     )
 
 
-def angles_from_direction(direction: Array) -> tuple[Array, Array]:
-    """Azimuths in [-pi, pi] and elevations of vectors of any length: `direction_from_angles` back.
+def zenith_azimuth(directions: Array) -> tuple[Array, Array]:
+    """Zenith angles and azimuths, in [-pi, pi], of vectors of any length.
 
     Parameters
     ----------
-    direction : ndarray of float64, shape (..., 3)
+    directions : ndarray of float64, shape (..., 3)
 
     Returns
     -------
-    azimuth, elevation : ndarray of float64, shape (...)
+    zenith, azimuth : ndarray of float64, shape (...)
         [rad]
     """
-    x, y, z = np.moveaxis(direction, -1, 0)
-    return np.arctan2(x, -z), np.arctan2(y, np.hypot(x, z))
+    x, y, z = np.moveaxis(directions, -1, 0)
+    return np.arctan2(np.hypot(x, z), y), np.arctan2(x, -z)
 
 
 def cosine_between(

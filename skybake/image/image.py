@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from skybake.colour.space import luminance_weights
 from skybake.formats.preview import png_bytes
 from skybake.image.layers import Pixels
 from skybake.image.light import Light, attributes_from_light, light_of_scene
-from skybake.image.picture import PREVIEW_WIDTH, CodeValues, canvases_ev, code_values
+from skybake.image.picture import PREVIEW_WIDTH, CodeValues, code_values, scene_ev
 from skybake.image.raster import Raster
 from skybake.image.recipe import recipe_attributes
 from skybake.image.scene import Scene
@@ -32,10 +31,8 @@ class Image:
     pixels : ndarray of float32, shape (row, column, 3) or (face, row, column, 3)
         Linear and scene-referred. Row 0 looks up; of a cubemap in six pictures the faces
         come in the order +X -X +Y -Y +Z -Z.
-    projection : Projection
-        Where pixels look.
-    encoding : Encoding
-        What the numbers mean.
+    scene : Scene
+        What they show; its settings say where pixels look and what the numbers mean.
     light : Light
         Directions and illuminances.
     metadata : mapping of str to Any
@@ -43,8 +40,7 @@ class Image:
     """
 
     pixels: Pixels
-    projection: Projection
-    encoding: Encoding
+    scene: Scene = field(repr=False)
     light: Light
     metadata: Mapping[str, Any]
 
@@ -52,12 +48,15 @@ class Image:
         """Return the pixels, so that `numpy.asarray` of the image is what one expects."""
         return np.array(self.pixels, dtype=dtype, copy=copy)
 
-    def legible_ev(self) -> float:
-        """Exposure value at which the picture is legible."""
-        encoding = self.encoding
-        luminance = luminance_weights(encoding.space) * encoding.white_luminance
-        canvases = self.projection.canvases()
-        return canvases_ev(canvases, self._pictures(), luminance)
+    @property
+    def projection(self) -> Projection:
+        """Where pixels look."""
+        return self.scene.settings.view.projection
+
+    @property
+    def encoding(self) -> Encoding:
+        """What the numbers mean."""
+        return self.scene.settings.encoding
 
     def picture(self, ev: float | None = None, view: str = "aces2") -> CodeValues:
         """Return the image as a screen shows it.
@@ -74,7 +73,7 @@ class Image:
         ndarray of uint8, shape (row, column, 3)
             Code values of sRGB; six faces lie in a cross.
         """
-        ev = self.legible_ev() if ev is None else ev
+        ev = scene_ev(self.scene) if ev is None else ev
         return code_values(self._joined(), self.encoding, ev, view)
 
     def _repr_png_(self) -> bytes:
@@ -82,9 +81,6 @@ class Image:
         picture = self.picture()
         step = -(-picture.shape[1] // PREVIEW_WIDTH)
         return png_bytes(picture[step // 2 :: step, step // 2 :: step])
-
-    def _pictures(self) -> list[Pixels]:
-        return [self.pixels] if self.pixels.ndim == 3 else list(self.pixels)
 
     def _joined(self) -> Pixels:
         if self.pixels.ndim == 3:
@@ -112,10 +108,9 @@ def image_of_scene(scene: Scene, progress: Callable[[float], None] | None = None
     CancelledError
         If the scene's workers were stopped.
     """
-    projection = scene.settings.view.projection
     light = light_of_scene(scene)
     pictures = []
-    canvases = projection.canvases()
+    canvases = scene.settings.view.projection.canvases()
     total = sum(canvas.height for canvas in canvases)
     done = 0
     for canvas in canvases:
@@ -131,8 +126,7 @@ def image_of_scene(scene: Scene, progress: Callable[[float], None] | None = None
         pictures.append(pixels)
     return Image(
         pixels=pictures[0] if len(pictures) == 1 else np.stack(pictures),
-        projection=projection,
-        encoding=scene.settings.encoding,
+        scene=scene,
         light=light,
         metadata={
             **attributes_from_light(light),

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 import numpy.typing as npt
 
@@ -25,36 +23,16 @@ CodeValues = npt.NDArray[np.uint8]
 
 
 def scene_ev(scene: Scene) -> float:
-    """Exposure value at which a scene is legible, whatever the size of the map."""
-    projection = scene.settings.view.projection.glance(2 * SURVEY_ROWS)
-    canvases = projection.canvases()
-    return canvases_ev(canvases, [_rows(scene, canvas) for canvas in canvases], scene.luminance)
+    """Exposure value at which a scene is legible, whatever the size of the map.
 
-
-def canvases_ev(
-    canvases: Sequence[Canvas], pixels: Sequence[Pixels], luminance: npt.NDArray[np.float64]
-) -> float:
-    """Exposure value at which the pictures of a map are legible.
-
-    Parameters
-    ----------
-    canvases : sequence of Canvas
-        Each of a single chart.
-    pixels : sequence of ndarray of float32, shape (row, column, 3)
-        What they hold, scene-linear.
-    luminance : ndarray of float64, shape (3,)
-        Luminances of red, green and blue. [cd m⁻²]
+    A map of the whole sphere is judged by all of it, a picture of a part by what it shows.
     """
-    values, weights, above = [], [], []
-    for canvas, rows in zip(canvases, pixels, strict=True):
-        (part,) = canvas.parts
-        shape = rows.shape[:2]
-        zenith, _ = part.chart.angles(0, canvas.height)
-        size = part.chart.solid_angles(0, canvas.height)
-        values.append(np.maximum(rows @ luminance, 0.0).ravel())
-        weights.append(np.broadcast_to(size, shape).ravel())
-        above.append(np.broadcast_to(zenith <= np.pi / 2.0, shape).ravel())
-    return auto_ev(*(np.concatenate(each) for each in (values, weights, above)))
+    (canvas,) = scene.settings.view.projection.glance(2 * SURVEY_ROWS).canvases()
+    (part,) = canvas.parts
+    luminance = _rows(scene, canvas) @ scene.luminance
+    zenith, _ = part.chart.angles(0, canvas.height)
+    weights = part.chart.solid_angles(0, canvas.height)
+    return auto_ev(np.maximum(luminance, 0.0), weights, zenith <= np.pi / 2.0)
 
 
 def show_scene(scene: Scene, show: Show, ev: float) -> None:

@@ -112,7 +112,7 @@ def sky_pixels(scene: Scene, chart: Chart, first: int, last: int) -> Pixels:
 
 def _limb(scene: Scene, zenith: np.ndarray, footprint: np.ndarray) -> np.ndarray:
     """Pixels that hold a part of the limb, where the limb is only a few pixels high."""
-    first, last = scene.view.zenith_first, scene.view.zenith_horizon
+    first, last = scene.table.zenith_first, scene.table.zenith_horizon
     if first == 0.0:
         return np.zeros(zenith.shape, np.bool_)
     is_coarse = footprint >= LIMB_COARSE * (last - first)

@@ -10,6 +10,7 @@ import numpy as np
 from skybake.colour.observer import xyz_weights
 from skybake.colour.space import find_colour_space, luminance_weights, rgb_from_xyz
 from skybake.image.settings import MapSettings
+from skybake.image.stages import Stages
 from skybake.jit.arguments import flatten
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.medium import Array
@@ -19,7 +20,6 @@ from skybake.projection.cells import Cells
 from skybake.sky.disc import Disc
 from skybake.sky.pixels import allocate_pixels, fill_directions
 from skybake.sky.sky import WAVELENGTHS, Sky
-from skybake.sky.spectral_table import fold_table
 from skybake.sky.table import FoldedTable
 
 PROBE_ZENITHS = 192
@@ -59,12 +59,21 @@ class Scene:
         The observer, the sun, the colour space and the scale.
     workers : Workers, optional
         Who does the work.
+    stages : Stages, optional
+        What makes the table that pixels read, and may keep it.
     """
 
-    def __init__(self, planet: Planet, settings: MapSettings, workers: Workers = ALL_CPUS) -> None:
+    def __init__(
+        self,
+        planet: Planet,
+        settings: MapSettings,
+        workers: Workers = ALL_CPUS,
+        stages: Stages | None = None,
+    ) -> None:
         self.planet = planet
         self.settings = settings
         self.workers = workers
+        self._stages = stages or Stages()
         self.sky = Sky(
             planet,
             settings.lighting.sun_elevation,
@@ -94,10 +103,9 @@ class Scene:
         return weights
 
     @cached_property
-    def view(self) -> FoldedTable:
+    def table(self) -> FoldedTable:
         """The sky as a table of pixel values."""
-        table = self.sky.skylight.spectral_table(self.sky.source)
-        return fold_table(table, self.sky.skylight.basis, self.rgb_weights)
+        return self._stages.folded_table(self.sky, self.rgb_weights)
 
     @property
     def layer_names(self) -> tuple[str, ...]:
@@ -144,10 +152,10 @@ class Scene:
         rows, columns = np.broadcast_shapes(zenith.shape, azimuth.shape)
         out = np.empty((rows, columns, 3), np.float32)
         extent = np.atleast_2d(np.asarray(footprint, dtype=float))
-        pixels = flatten(self.view), flatten(zenith), flatten(azimuth), flatten(extent)
+        pixels = flatten(self.table), flatten(zenith), flatten(azimuth), flatten(extent)
 
         def work(first: int, last: int) -> None:
-            scratch = allocate_pixels(self.view, columns)
+            scratch = allocate_pixels(self.table, columns)
             fill_directions(*pixels, first, last, scratch, out[first:last])
 
         self.workers.run_rows(rows, work, chunk=128 // self.workers.shares(8))

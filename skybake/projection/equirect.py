@@ -15,6 +15,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 import numpy.typing as npt
 
+from skybake.angles import direction_from_angles
 from skybake.errors import InputError
 from skybake.projection.cells import CELLS_PER_RADIUS, Array, Cells, cover, subdivide
 from skybake.projection.chart import Canvas, Chart, Projection, check_edge, size_text, whole
@@ -34,16 +35,8 @@ def column_bearings(width: int) -> Array:
 
 def directions(width: int, height: int) -> Array:
     """Return unit vectors of all texels, shape (height, width, 3); +Y up, -Z north, +X east."""
-    zenith = row_zeniths(height)[:, None]
-    bearing = column_bearings(width)
-    return np.stack(
-        [
-            np.sin(zenith) * np.sin(bearing),
-            np.broadcast_to(np.cos(zenith), (height, width)),
-            -np.sin(zenith) * np.cos(bearing),
-        ],
-        axis=-1,
-    )
+    elevation = math.pi / 2.0 - row_zeniths(height)
+    return direction_from_angles(column_bearings(width), elevation[:, None])
 
 
 def solid_angles(width: int, height: int) -> Array:

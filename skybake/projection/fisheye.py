@@ -14,16 +14,15 @@ from typing import Any, ClassVar, Self
 import numpy as np
 import numpy.typing as npt
 
+from skybake.angles import direction_from_angles, zenith_azimuth
 from skybake.errors import InputError
 from skybake.projection.cells import CELLS_PER_RADIUS, Array, Cells, cover, subdivide
 from skybake.projection.chart import Canvas, Chart, Projection, check_edge, size_text, whole
 from skybake.projection.frame import (
     Frame,
     check_look,
-    direction,
     look_frame,
     look_label,
-    zenith_bearing,
     zenith_extent,
 )
 
@@ -50,7 +49,7 @@ class FisheyeChart(Chart):
 
     def angles(self, first: int, last: int) -> tuple[Array, Array]:
         """Directions of the pixels in rows first..last."""
-        return zenith_bearing(self._vectors(*self._plane(first, last)))
+        return zenith_azimuth(self._vectors(*self._plane(first, last)))
 
     def footprints(self, first: int, last: int) -> Array:
         """Extents of pixels in zenith angle."""
@@ -73,7 +72,11 @@ class FisheyeChart(Chart):
 
     def disc_cells(self, zenith: float, bearing: float, radius: float) -> Cells:
         """Cut a disc into cells, each of which adds to the one pixel that it lies in."""
-        centre, edge, step = direction(zenith, bearing), self.width, self._step
+        centre, edge, step = (
+            direction_from_angles(bearing, math.pi / 2.0 - zenith),
+            self.width,
+            self._step,
+        )
         frame, half = self._frame, 0.5 * self._fov
         off_axis = math.acos(min(max(float(frame.forward @ centre), -1.0), 1.0))
         turn = math.atan2(-float(frame.up @ centre), float(frame.right @ centre))
@@ -102,7 +105,7 @@ class FisheyeChart(Chart):
         weight = np.zeros(texel.shape)
         weight[:, 0] = 1.0 / self._size(off_axis_texel[inside])
         return Cells(
-            zenith=zenith_bearing(vectors[inside])[0],
+            zenith=zenith_azimuth(vectors[inside])[0],
             distance=distance[inside],
             solid_angle=covered[inside],
             texel=texel,

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from skybake.angles import zenith_azimuth
 from skybake.errors import InputError
 from skybake.projection.cells import Array
 
@@ -65,23 +66,6 @@ def look_label(azimuth: float, elevation: float) -> str:
     return f"az{bearing:g}deg_el{math.degrees(elevation):g}deg"
 
 
-def direction(zenith: float, bearing: float) -> Array:
-    """Return the unit vector of a zenith angle and a compass bearing, shape (3,)."""
-    return np.array(
-        [
-            math.sin(zenith) * math.sin(bearing),
-            math.cos(zenith),
-            -math.sin(zenith) * math.cos(bearing),
-        ]
-    )
-
-
-def zenith_bearing(directions: Array) -> tuple[Array, Array]:
-    """Zenith angles and compass bearings of unit vectors, each of shape (...). [rad]"""
-    x, y, z = np.moveaxis(directions, -1, 0)
-    return np.arctan2(np.hypot(x, z), y), np.arctan2(x, -z)
-
-
 def zenith_extent(directions: Array, across: Array, along: Array) -> Array:
     """Extent of pixels in zenith angle.
 
@@ -97,10 +81,10 @@ def zenith_extent(directions: Array, across: Array, along: Array) -> Array:
     ndarray of float64, shape (...)
         Height of the band of zenith angles that has the same variance as the tilted pixel. [rad]
     """
-    zenith, bearing = zenith_bearing(directions)
+    zenith, azimuth = zenith_azimuth(directions)
     cosine = np.cos(zenith)
     downward = np.stack(
-        [cosine * np.sin(bearing), -np.sin(zenith), -cosine * np.cos(bearing)], axis=-1
+        [cosine * np.sin(azimuth), -np.sin(zenith), -cosine * np.cos(azimuth)], axis=-1
     )
     extent: Array = np.hypot((across * downward).sum(axis=-1), (along * downward).sum(axis=-1))
     return extent

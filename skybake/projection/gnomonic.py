@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from skybake.angles import direction_from_angles, zenith_azimuth
 from skybake.projection.cells import CELLS_PER_RADIUS, Array, Cells, cover, subdivide
 from skybake.projection.chart import Chart
-from skybake.projection.frame import Frame, direction, zenith_bearing, zenith_extent
+from skybake.projection.frame import Frame, zenith_extent
 
 
 class GnomonicChart(Chart):
@@ -40,7 +41,7 @@ class GnomonicChart(Chart):
 
     def angles(self, first: int, last: int) -> tuple[Array, Array]:
         """Directions of the pixels in rows first..last."""
-        return zenith_bearing(self.vectors(first, last))
+        return zenith_azimuth(self.vectors(first, last))
 
     def footprints(self, first: int, last: int) -> Array:
         """Extents of pixels in zenith angle."""
@@ -59,7 +60,7 @@ class GnomonicChart(Chart):
     def disc_cells(self, zenith: float, bearing: float, radius: float) -> Cells:
         """Cut a disc into cells, each of which adds to the one pixel that it lies in."""
         frame, width, height = self.frame, self.width, self.height
-        centre = direction(zenith, bearing)
+        centre = direction_from_angles(bearing, math.pi / 2.0 - zenith)
         # Cells that the edge cuts may have their centres outside it.
         reach = radius * (1.0 + 2.0 / CELLS_PER_RADIUS)
         bounds = self._disc_bounds(
@@ -88,7 +89,7 @@ class GnomonicChart(Chart):
         weight = np.zeros(texel.shape)
         weight[:, 0] = 1.0 / self._solid_angles(*np.divmod(texel[:, 0], width))
         return Cells(
-            zenith=zenith_bearing(vectors[inside])[0],
+            zenith=zenith_azimuth(vectors[inside])[0],
             distance=distance[inside],
             solid_angle=covered[inside],
             texel=texel,

@@ -6,11 +6,11 @@ import math
 import numpy as np
 import pytest
 
+from skybake.angles import zenith_azimuth
 from skybake.image.scene import Scene
 from skybake.image.settings import map_settings
 from skybake.preset import load_preset
 from skybake.projection import cubemap, equirect
-from skybake.projection.frame import zenith_bearing
 from tests.baking.maps import bake_map, pixels
 
 PRESETS = ("earth", "mars", "earth-hillaire2020")
@@ -39,7 +39,7 @@ def sky_luminance(made, rows=32):
 def sample(image, vectors):
     """Bilinear lookup of directions in an equirect image."""
     height, width = image.shape[:2]
-    zenith, bearing = zenith_bearing(vectors)
+    zenith, bearing = zenith_azimuth(vectors)
     row = np.clip(zenith / math.pi * height - 0.5, 0.0, height - 1.001)
     column = bearing % (2.0 * math.pi) / (2.0 * math.pi) * width - 0.5
     i, j = np.floor(row).astype(int), np.floor(column).astype(int)

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from skybake.angles import zenith_azimuth
 from skybake.projection import cubemap
 from skybake.projection.cubemap import CROSS_ORIGINS, FACES
-from skybake.projection.frame import zenith_bearing
 
 SUN_RADIUS = math.radians(0.2666)
 AXES = {
@@ -81,7 +81,7 @@ def test_zenith_and_bearing_restore_the_direction(zenith, bearing):
             -math.sin(zenith) * math.cos(bearing),
         ]
     )
-    theta, phi = zenith_bearing(vector)
+    theta, phi = zenith_azimuth(vector)
     assert theta == pytest.approx(zenith, abs=1e-12)
     back = [math.sin(theta) * math.sin(phi), math.cos(theta), -math.sin(theta) * math.cos(phi)]
     assert back == pytest.approx(vector, abs=1e-12)
@@ -143,7 +143,7 @@ def test_faces_meet_at_the_edges_of_the_cross():
 def test_angles_of_a_face_are_those_of_its_directions(face):
     chart = cubemap.FaceChart(face, 12)
     zenith, bearing = chart.angles(2, 11)
-    expected_zenith, expected_bearing = zenith_bearing(chart.vectors(2, 11))
+    expected_zenith, expected_bearing = zenith_azimuth(chart.vectors(2, 11))
     np.testing.assert_allclose(zenith, expected_zenith, rtol=0.0, atol=1e-14)
     turn = np.exp(1j * (bearing - expected_bearing))
     np.testing.assert_allclose(turn, 1.0, rtol=0.0, atol=1e-14)

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from skybake.angles import zenith_azimuth
 from skybake.projection import equirect
-from skybake.projection.frame import zenith_bearing
 
 SUN_RADIUS = math.radians(0.2666)
 SIZES = [64, 256, 1024, 4096, 16384]
@@ -64,7 +64,7 @@ def test_places_of_the_axes(column, row, axis):
 def test_directions_are_the_zeniths_and_bearings_of_their_rows_and_columns():
     vectors = equirect.directions(64, 32)
     np.testing.assert_allclose(np.linalg.norm(vectors, axis=-1), 1.0, rtol=1e-14)
-    zenith, bearing = zenith_bearing(vectors)
+    zenith, bearing = zenith_azimuth(vectors)
     np.testing.assert_allclose(zenith, np.repeat(equirect.row_zeniths(32)[:, None], 64, 1))
     expected = np.repeat(equirect.column_bearings(64)[None], 32, 0)
     np.testing.assert_allclose(bearing % (2.0 * math.pi), expected)
@@ -79,7 +79,7 @@ def test_every_texel_is_found_again_from_its_direction(column, row):
         math.cos(zenith),
         -math.sin(zenith) * math.cos(bearing),
     ]
-    back_zenith, back_bearing = zenith_bearing(np.array(vector))
+    back_zenith, back_bearing = zenith_azimuth(np.array(vector))
     assert back_zenith / math.pi * 512 == pytest.approx(row + 0.5, abs=1e-9)
     assert back_bearing % (2 * math.pi) / (2 * math.pi) * 1024 == pytest.approx(
         column + 0.5, abs=1e-9

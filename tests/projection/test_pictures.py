@@ -7,9 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from skybake.angles import direction_from_angles
 from skybake.errors import InputError
 from skybake.projection import PROJECTIONS, Fisheye, Perspective, find_projection
-from skybake.projection.frame import direction, look_frame
+from skybake.projection.frame import look_frame
 
 SUN_RADIUS = math.radians(0.2666)
 CAP = 4.0 * math.pi * math.sin(SUN_RADIUS / 2.0) ** 2
@@ -43,7 +44,7 @@ def test_axes_of_a_picture_are_right_handed_and_of_length_1(azimuth, elevation):
     np.testing.assert_allclose(np.cross(right, up), -forward, atol=1e-12)
     np.testing.assert_allclose(np.cross(up, forward), -right, atol=1e-12)
     np.testing.assert_allclose(np.linalg.norm([right, up, forward], axis=1), 1.0, rtol=1e-12)
-    np.testing.assert_allclose(forward, direction(math.pi / 2 - elevation, azimuth), atol=1e-12)
+    np.testing.assert_allclose(forward, direction_from_angles(azimuth, elevation), atol=1e-12)
     assert abs(right[1]) < 1e-12
     assert up[1] > -1e-12
 

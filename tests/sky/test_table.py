@@ -92,7 +92,7 @@ def test_rays_at_few_azimuths_tell_all_others(monkeypatch, preset, elevation, al
     monkeypatch.setattr("skybake.sky.spectral_table.ray_azimuths", lambda *_: AZIMUTHS)
     light = made.sky.skylight
     many = fold_table(light.spectral_table(made.sky.source), light.basis, made.rgb_weights)
-    monkeypatch.setitem(made.__dict__, "view", many)
+    monkeypatch.setitem(made.__dict__, "table", many)
     np.testing.assert_allclose(few, by_table(made, zenith, azimuth), rtol=tolerance)
 
 
@@ -113,7 +113,7 @@ def test_table_seen_from_space_is_within_half_a_percent(preset, elevation, altit
     what is darker than a thousandth of the brightest.
     """
     made = scene(preset, elevation, altitude)
-    first, horizon = np.degrees([made.view.zenith_first, made.view.zenith_horizon])
+    first, horizon = np.degrees([made.table.zenith_first, made.table.zenith_horizon])
     random = np.random.default_rng(11)
     limb = first + (horizon - first) * random.uniform(0.1, 0.9, 300)
     disc = 180.0 - (180.0 - horizon) * random.uniform(0.0, 0.99, 300)
@@ -129,7 +129,7 @@ def test_table_seen_from_space_is_within_half_a_percent(preset, elevation, altit
 def test_table_is_within_three_percent_of_rays_up_to_the_horizon(preset, elevation):
     made = scene(preset, elevation)
     offset = np.array([-0.3, -0.1, -0.03, -0.01, -0.003, 0.003, 0.01, 0.03, 0.1, 0.3])
-    horizon = math.degrees(made.view.zenith_horizon)
+    horizon = math.degrees(made.table.zenith_horizon)
     zenith, azimuth = (x.ravel() for x in np.meshgrid(horizon + offset, [0.0, 20.0, 90.0, 180.0]))
     table, rays = by_table(made, zenith, azimuth), by_rays(made, zenith, azimuth)
     assert np.abs(table[:, 1] / rays[:, 1] - 1.0).max() < 0.03
@@ -169,7 +169,7 @@ def test_both_sides_of_the_suns_meridian_are_the_same(elevation):
 def test_a_pixel_across_the_horizon_is_the_mean_of_both_sides():
     made = scene("earth", 30.0)
     height = math.radians(1.0)
-    zenith = np.array([[made.view.zenith_horizon + 0.2 * height]])
+    zenith = np.array([[made.table.zenith_horizon + 0.2 * height]])
     pixel = made.evaluate(zenith, np.array([[1.0]]), height)[0, 0]
     fine = (np.arange(1000) + 0.5) / 1000 - 0.5
     parts = made.evaluate(zenith + fine[:, None] * height, np.full((1000, 1), 1.0), POINT)[:, 0]
@@ -190,7 +190,7 @@ def test_air_begins_at_its_top_seen_from_space():
 
 def test_space_above_the_air_is_black():
     made = scene("earth", 30.0, 400.0)
-    zenith = np.linspace(0.0, math.degrees(made.view.zenith_first) - 0.01, 50)
+    zenith = np.linspace(0.0, math.degrees(made.table.zenith_first) - 0.01, 50)
     assert (by_table(made, zenith, np.full(50, 40.0)) == 0.0).all()
 
 

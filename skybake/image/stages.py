@@ -1,0 +1,28 @@
+"""From a sky to the table that pixels read."""
+
+from __future__ import annotations
+
+from skybake.optics.medium import Array
+from skybake.sky.sky import Sky
+from skybake.sky.spectral_table import SpectralTable, fold_table
+from skybake.sky.table import FoldedTable
+
+
+class Stages:
+    """Computes each stage when it is asked for, and keeps none."""
+
+    def spectral_table(self, sky: Sky) -> SpectralTable:
+        """Light around the observer in all wavelengths; the one stage that traces rays."""
+        return sky.skylight.spectral_table(sky.source)
+
+    def folded_table(self, sky: Sky, rgb_weights: Array) -> FoldedTable:
+        """Light around the observer as pixel values.
+
+        Parameters
+        ----------
+        sky : Sky
+            What is seen.
+        rgb_weights : ndarray of float64, shape (wavelength, 3)
+            Pixel values are the radiance per unit irradiance times these.
+        """
+        return fold_table(self.spectral_table(sky), sky.skylight.basis, rgb_weights)

@@ -1,0 +1,149 @@
+"""A pipeline that stays hot between requests, as of frames, previews or a page of knobs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from threading import Event
+
+from skybake.image.image import Image, image_of_scene
+from skybake.image.picture import CodeValues, scene_ev, thumbnail
+from skybake.image.scene import Scene
+from skybake.image.settings import MapSettings
+from skybake.jit.workers import ALL_CPUS, Workers
+from skybake.pipeline.stages import KeptStages
+from skybake.preset import Planet, load_preset
+
+KEPT = 2
+
+Progress = Callable[[str, float], None]
+"""Called with the name of a stage and the share of it that is done, from 0 to 1."""
+
+
+class Pipeline:
+    """Makes images, and keeps what of one serves the next.
+
+    Another exposure, scale or colour space folds the light anew and traces no ray; another
+    projection or size only evaluates pixels; another sun or altitude keeps the atmosphere.
+
+    Parameters
+    ----------
+    workers : Workers, optional
+        Who does the work.
+    keep : int, optional
+        Suns and altitudes whose light stays in memory, 6 to 70 MB each.
+
+    Notes
+    -----
+    Several threads may ask at once; what two of them need is computed once.
+    """
+
+    def __init__(self, *, workers: Workers = ALL_CPUS, keep: int = KEPT) -> None:
+        self._workers = workers
+        self._stages = KeptStages(keep)
+
+    def scene(
+        self, preset: Planet | str | Path, settings: MapSettings, cancel: Event | None = None
+    ) -> Scene:
+        """Return a scene whose stages are shared with those before it.
+
+        Parameters
+        ----------
+        preset : Planet, str or Path
+            A loaded planet, a preset's name, or the path of a preset's file.
+        settings : MapSettings
+            What is looked at, what lights it, and what its numbers mean.
+        cancel : threading.Event, optional
+            Stops the work of this scene when another thread sets it.
+
+        Raises
+        ------
+        SkybakeError
+            If the preset or a setting cannot be used.
+        """
+        planet = preset if isinstance(preset, Planet) else load_preset(preset)
+        workers = self._workers if cancel is None else self._workers.with_cancel(cancel)
+        return Scene(planet, settings, workers, self._stages)
+
+    def image(
+        self,
+        preset: Planet | str | Path,
+        settings: MapSettings,
+        *,
+        progress: Progress | None = None,
+        cancel: Event | None = None,
+    ) -> Image:
+        """Make an image.
+
+        Parameters
+        ----------
+        preset, settings, cancel
+            As of `scene`.
+        progress : callable, optional
+            Called with the stage, "atmosphere", "sky" or "pixels", and the share of it that
+            is done.
+
+        Raises
+        ------
+        SkybakeError
+            If the preset or a setting cannot be used.
+        CancelledError
+            If another thread has set `cancel`; what was finished until then is kept.
+        """
+        scene = self.scene(preset, settings, cancel)
+        _prepare(scene, progress)
+        return image_of_scene(scene, _of_stage(progress, "pixels"))
+
+    def picture(
+        self,
+        preset: Planet | str | Path,
+        settings: MapSettings,
+        *,
+        width: int,
+        ev: float | None = None,
+        view: str = "aces2",
+        progress: Progress | None = None,
+        cancel: Event | None = None,
+    ) -> CodeValues:
+        """Make a picture for a screen, so wide: of a map of the whole sphere an equirect one.
+
+        Parameters
+        ----------
+        preset, settings, progress, cancel
+            As of `image`.
+        width : int
+            [pixel]
+        ev : float, optional
+            Exposure value at ISO 100; by default a legible one.
+        view : {"aces2", "aces1"}, optional
+            Display transform.
+
+        Returns
+        -------
+        ndarray of uint8, shape (row, width, 3)
+            Code values of sRGB.
+        """
+        scene = self.scene(preset, settings, cancel)
+        _prepare(scene, progress)
+        return thumbnail(scene, scene_ev(scene) if ev is None else ev, view, width)
+
+
+def _prepare(scene: Scene, progress: Progress | None) -> None:
+    """Go through the stages before the pixels, which would else be gone through by them."""
+    for name, stage in (
+        ("atmosphere", lambda: scene.sky.atmosphere),
+        ("sky", lambda: scene.table),
+    ):
+        scene.workers.check()
+        report = _of_stage(progress, name)
+        if report is not None:
+            report(0.0)
+        stage()
+        if report is not None:
+            report(1.0)
+
+
+def _of_stage(progress: Progress | None, stage: str) -> Callable[[float], None] | None:
+    if progress is None:
+        return None
+    return lambda share: progress(stage, share)
