@@ -6,6 +6,8 @@ on stderr and exits with status 1.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 
 class SkybakeError(Exception):
     """A fault in what the user gave or in where the result should go."""
@@ -50,3 +52,31 @@ class InputError(SkybakeError, ValueError):
 
 class TooThickError(InputError):
     """An atmosphere is optically too thick for all orders of scattering to be solved for."""
+
+
+class ArgumentError(InputError):
+    """Arguments of a function cannot be used, alone or beside each other.
+
+    Parameters
+    ----------
+    problem : str
+        The message, with names of arguments in braces, as
+        ``{latitude}: needs {longitude} beside it``.
+    **values : object
+        What else stands in braces.
+    """
+
+    def __init__(self, problem: str, /, **values: object) -> None:
+        self._problem, self._values = problem, values
+        super().__init__(self.text({}))
+
+    def text(self, names: Mapping[str, str]) -> str:
+        """Return the message with other names for the arguments, as those of options."""
+        return self._problem.format_map(_Names({**names, **self._values}))
+
+
+class _Names(dict[str, object]):
+    """Names that stand for themselves unless others are given."""
+
+    def __missing__(self, name: str) -> str:
+        return name

@@ -98,3 +98,8 @@ def face_path(target: Path, face: str) -> Path:
     if "{face}" in target.name:
         return target.with_name(target.name.replace("{face}", face))
     return target.with_name(f"{target.stem}_{face}{target.suffix}")
+
+
+def preview_beside(target: Path) -> Path:
+    """Default name of the picture of a map."""
+    return target.with_name(target.name.replace("{face}", "preview")).with_suffix(".png")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from skybake.commands.memory import check_memory
-from skybake.commands.report import notice
+from skybake.commands.printing.notices import notice
 from skybake.errors import OutputError
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from typing import Any
 import click
 
 from skybake.commands.memory import check_memory
-from skybake.commands.parameters import with_suffix
-from skybake.commands.world import change_options, is_changed, load_world, world_overrides
+from skybake.commands.options.values import with_suffix
+from skybake.commands.options.world import change_options, changes_from_options, is_changed
 from skybake.errors import InputError, OutputError, PresetError
 
 
@@ -35,7 +35,7 @@ def list_() -> None:
     "--resolved", is_flag=True, help="Print it with what it extends, and where each key is from."
 )
 @change_options
-def show(name: str, resolved: bool, **options: Any) -> None:
+def show(name: str, resolved: bool, **_: Any) -> None:
     """Print the preset NAME as TOML: its own file, with the source of every value in it.
 
     With --resolved, or with a change, what it extends is merged into it, and each key from
@@ -48,8 +48,12 @@ def show(name: str, resolved: bool, **options: Any) -> None:
     """
     from skybake.preset import preset_text, resolved_text
 
-    if resolved or is_changed(options):
-        click.echo(resolved_text(name, world_overrides(name, options)), nl=False)
+    context = click.get_current_context()
+    if is_changed(context):
+        overrides = changes_from_options(context).overrides(name)
+        click.echo(resolved_text(name, overrides), nl=False)
+    elif resolved:
+        click.echo(resolved_text(name), nl=False)
     else:
         click.echo(preset_text(name), nl=False)
 
@@ -57,7 +61,7 @@ def show(name: str, resolved: bool, **options: Any) -> None:
 @presets.command()
 @click.argument("name", metavar="NAME|PATH")
 @change_options
-def check(name: str, **options: Any) -> None:
+def check(name: str, **_: Any) -> None:
     """Tell every fault of a preset, or figures that follow from it.
 
     Each fault is a line with the file and the key; the exit status is then 1. Otherwise it prints
@@ -72,7 +76,7 @@ def check(name: str, **options: Any) -> None:
     """
     check_memory()
     try:
-        planet = load_world(name, options)
+        planet = changes_from_options(click.get_current_context()).load(name)
 
         from skybake.inspect.summary import summarise, summary_text
 
@@ -128,7 +132,7 @@ def new(name: str, base: str) -> None:
     help="Picture to write, .png or .svg.",
 )
 @change_options
-def plot(name: str, output: Path | None, **options: Any) -> None:
+def plot(name: str, output: Path | None, **_: Any) -> None:
     """Draw the coefficients, profiles and phase functions of a preset.
 
     Needs matplotlib: pip install 'skybake[plot]'.
@@ -139,7 +143,7 @@ def plot(name: str, output: Path | None, **options: Any) -> None:
       skybake presets plot earth --set aerosol.optical_depth=0.3 -o haze.png
     """
     check_memory()
-    planet = load_world(name, options)
+    planet = changes_from_options(click.get_current_context()).load(name)
     try:
         from skybake.baking.paths import world_name
         from skybake.inspect.plot import plot_planet

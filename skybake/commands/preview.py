@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from skybake.commands.memory import check_memory
-from skybake.commands.parameters import VIEWS, exposure, with_suffix
+from skybake.commands.options.values import VIEWS, exposure, with_suffix
 from skybake.errors import InputError
 
 

@@ -8,25 +8,27 @@ from typing import Any
 
 import click
 
-from skybake.commands import parameters, world
 from skybake.commands.memory import check_memory
+from skybake.commands.options import values
+from skybake.commands.options.observer import altitude_option, sun_option
+from skybake.commands.options.world import world_from_options, world_options
 from skybake.errors import InputError
 
 
 def _wavelengths(text: str) -> tuple[float, ...]:
     try:
-        values = tuple(float(part) for part in text.split(","))
+        wavelengths = tuple(float(part) for part in text.split(","))
     except ValueError:
-        values = ()
-    if not values or not all(0.0 < value < 1e6 for value in values):
+        wavelengths = ()
+    if not wavelengths or not all(0.0 < value < 1e6 for value in wavelengths):
         raise click.BadParameter(f"must be as 680,550,440 in nm, got {text!r}")
-    return values
+    return wavelengths
 
 
 @click.command()
-@world.world_options
-@parameters.sun_option
-@parameters.altitude_option
+@world_options
+@sun_option()
+@altitude_option()
 @click.option(
     "--directions",
     metavar="FILE.csv|-",
@@ -48,7 +50,7 @@ def _wavelengths(text: str) -> tuple[float, ...]:
 @click.option("--illuminance", is_flag=True, help="Add illuminances by sun and sky, in lx.")
 @click.option(
     "--method",
-    type=click.Choice((*parameters.METHODS, "reference")),
+    type=click.Choice((*values.METHODS, "reference")),
     default="full",
     show_default=True,
     help="Light transport, as of render, or unbiased paths with their standard errors.",
@@ -87,7 +89,7 @@ def probe(**options: Any) -> None:
     from skybake.formats.partial import replace_when_whole
     from skybake.inspect.probe import default_directions, probe, read_directions
 
-    planet = world.load_world(options["preset"], options)
+    planet = world_from_options(click.get_current_context())
     source: Path | None = options["directions"]
     if source is None:
         directions = default_directions(options["sun_elevation"])

@@ -8,51 +8,35 @@ from typing import Any
 
 import click
 
-from skybake.commands import maps, moment, parameters, report, request, world
 from skybake.commands.memory import check_memory
-from skybake.commands.place import place_options
+from skybake.commands.options import values
+from skybake.commands.options.maps import map_needs, map_options, map_settings
+from skybake.commands.options.observer import altitude_option, sun_azimuth_option, sun_option
+from skybake.commands.options.previews import BESIDE, preview_needs, preview_options
+from skybake.commands.options.rules import check_needs
+from skybake.commands.options.times import moment_from_options, moment_needs, moment_options
+from skybake.commands.options.world import world_from_options, world_options
+from skybake.commands.printing import render_summary
+from skybake.commands.printing.notices import announce, notice
+from skybake.commands.printing.progress import map_progress
 
 
 @click.command()
-@world.world_options
-@parameters.sun_option
-@click.option(
-    "--sun-azimuth",
-    metavar="ANGLE",
-    type=parameters.bearing,
-    default="180deg",
-    show_default=True,
-    help="Compass bearing of the sun: 0deg is north, 90deg east.",
-)
-@moment.time_option
-@place_options
-@parameters.altitude_option
-@maps.map_options
+@world_options
+@sun_option()
+@sun_azimuth_option()
+@moment_options
+@altitude_option()
+@map_options
 @click.option(
     *("-o", "--output"),
     metavar="FILE",
     type=click.Path(path_type=Path),
-    callback=parameters.with_suffix(".exr", ".hdr"),
+    callback=values.with_suffix(".exr", ".hdr"),
     show_default="a name that says what it is, in the current folder",
     help="Map to write, .exr or .hdr; {face} in it is replaced for six files.",
 )
-@click.option(
-    "--preview",
-    is_flag=False,
-    flag_value=request.BESIDE,
-    metavar="[FILE.png]",
-    type=click.Path(path_type=Path),
-    callback=parameters.with_suffix(".png"),
-    help="Also write a picture to look at; by default beside the map.",
-)
-@click.option(
-    "--preview-ev",
-    metavar="auto|N",
-    type=parameters.exposure,
-    show_default="auto",
-    help="Its exposure value at ISO 100; auto finds a legible one.",
-)
-@maps.view_option
+@preview_options
 @click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object.")
 @click.option("-q", "--quiet", is_flag=True, help="Print no progress and no summary.")
 def render(**options: Any) -> None:
@@ -73,33 +57,38 @@ def render(**options: Any) -> None:
     check_memory()
     started = time.perf_counter()
     context = click.get_current_context()
-    request.check_together(context)
-    when = moment.moment(context)
-    if when is not None:
-        options |= {"sun_elevation": when.sun_elevation, "sun_azimuth": when.sun_azimuth}
-    settings = request.map_settings(options)
+    check_needs(context, moment_needs(context), map_needs(options), preview_needs(options))
+    moment = moment_from_options(context)
+    settings = map_settings(
+        options,
+        sun_elevation=options["sun_elevation"] if moment is None else moment.sun_elevation,
+        sun_azimuth=options["sun_azimuth"] if moment is None else moment.sun_azimuth,
+        altitude=options["altitude"],
+    )
 
     from skybake.baking import bake, companion, default_path
+    from skybake.baking.paths import preview_beside
 
-    planet = world.load_world(options["preset"], options)
+    planet = world_from_options(context)
     output = options["output"] or default_path(planet, settings)
+    preview = preview_beside(output) if options["preview"] == BESIDE else options["preview"]
     quiet = options["quiet"]
     if not quiet:
-        report.announce(output)
-    with companion.beside(), report.progress_bar(quiet=quiet) as progress:
+        announce(output)
+    with companion.beside(), map_progress(quiet=quiet) as progress:
         baked = bake(
             planet,
             output,
             settings,
-            preview=request.preview_path(options["preview"], output),
+            preview=preview,
             preview_ev=options["preview_ev"],
-            preview_view=options["view"] or parameters.VIEWS[0],
-            attributes=None if when is None else when.attributes,
+            preview_view=options["view"] or values.VIEWS[0],
+            attributes=None if moment is None else moment.attributes,
             progress=progress,
-            notice=None if quiet else report.notice,
+            notice=None if quiet else notice,
         )
     seconds = time.perf_counter() - started
     if options["as_json"]:
-        report.print_json(baked, planet.name, settings, seconds, when)
+        render_summary.print_json(baked, planet.name, settings, seconds, moment)
     elif not quiet:
-        report.print_summary(baked, seconds)
+        render_summary.print_summary(baked, seconds)

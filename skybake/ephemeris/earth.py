@@ -86,6 +86,6 @@ def refraction(elevation: float) -> float:
 def _observe(time: datetime, place: Place) -> tuple[ephem.Sun, ephem.Observer]:
     observer = ephem.Observer()
     observer.pressure = 0.0
-    observer.lat, observer.lon = place
+    observer.lat, observer.lon = place.latitude, place.longitude
     observer.date = (time - _DUBLIN_EPOCH) / timedelta(days=1)
     return ephem.Sun(observer), observer

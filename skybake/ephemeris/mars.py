@@ -11,7 +11,6 @@ import math
 from datetime import UTC, datetime, timedelta
 from typing import NamedTuple
 
-from skybake.ephemeris.place import Place
 from skybake.errors import InputError
 
 FIRST_YEAR, LAST_YEAR = 1972, 2127
@@ -46,28 +45,6 @@ _LEAPS = (
     *("1990-01", "1991-01", "1992-07", "1993-07", "1994-07", "1996-01", "1997-07"),
     *("1999-01", "2006-01", "2009-01", "2012-07", "2015-07", "2017-01"),
 )
-
-
-def _site(latitude: float, longitude: float) -> Place:
-    return Place(math.radians(latitude), math.radians(longitude))
-
-
-SITES = {
-    "ares-vallis": _site(19.13, -33.22),
-    "chryse": _site(22.27, -47.95),
-    "elysium": _site(4.50, 135.62),
-    "gale": _site(-4.59, 137.44),
-    "green-valley": _site(68.22, -125.75),
-    "gusev": _site(-14.57, 175.47),
-    "jezero": _site(18.44, 77.45),
-    "meridiani": _site(-1.95, -5.53),
-    "olympus-mons": _site(18.65, -133.80),
-    "utopia": _site(47.64, 134.29),
-}
-"""Planetocentric latitude and east longitude (IAU 2000), to 0.05 deg, of where these
-stand, as their missions have it: Pathfinder, Viking 1 (Michael et al. 1976), InSight
-(Golombek et al. 2020), Curiosity, Phoenix, Spirit, Perseverance, Opportunity and Viking 2;
-and of the mountain (USGS Gazetteer of Planetary Nomenclature)."""
 
 
 class MarsTime(NamedTuple):

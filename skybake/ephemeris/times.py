@@ -104,8 +104,8 @@ def parse_time(
     if moment.tzinfo is None:
         if zone is None:
             raise InputError(
-                f"needs an offset, as {text}Z or {text}+02:00, or a time zone (--tz), since "
-                f"clocks differ, got {text!r}"
+                f"needs an offset, as {text}Z or {text}+02:00, or a time zone, since clocks differ "
+                f"(got {text!r})"
             )
         return _from_local(moment, zone)
     return moment.astimezone(UTC)

@@ -1,6 +1,6 @@
 """Planets from TOML: where presets live, what they may say, and every check on it."""
 
-from skybake.preset.extend import Override, Overrides, base_name, load_document
+from skybake.preset.extend import Override, Overrides, load_document, planet_name
 from skybake.preset.find import preset_names, preset_text
 from skybake.preset.load import load_preset
 from skybake.preset.model import (
@@ -48,9 +48,9 @@ __all__ = [
     "TabulatedPhase",
     "TabulatedProfile",
     "TentProfile",
-    "base_name",
     "load_document",
     "load_preset",
+    "planet_name",
     "preset_names",
     "preset_template",
     "preset_text",

@@ -11,7 +11,7 @@ from typing import Any
 
 from skybake.errors import PresetError
 from skybake.preset.document import Document, Key, Source, dotted
-from skybake.preset.find import display_name, find_preset, is_path, read_text
+from skybake.preset.find import display_name, find_preset, is_path, preset_names, read_text
 from skybake.preset.message import nearest, shown
 
 TOP_KEYS = (
@@ -82,15 +82,16 @@ def load_document(name_or_path: str | Path, overrides: Overrides = ()) -> Docume
     return document
 
 
-def base_name(name_or_path: str | Path) -> str:
-    """Return the name of what a preset extends in the end, its own if it extends nothing.
+def planet_name(name_or_path: str | Path) -> str | None:
+    """Return the planet whose air a preset describes, as ``mars``, if it extends one of ours.
 
     Raises
     ------
     PresetError
         If a file cannot be read or extends itself.
     """
-    return _chain(find_preset(name_or_path))[-1][0].stem
+    base = _chain(find_preset(name_or_path))[-1][0].stem
+    return base.partition("-")[0] if base in preset_names() else None
 
 
 def _listed(overrides: Overrides) -> list[Override]:

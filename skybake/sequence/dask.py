@@ -15,7 +15,7 @@ from skybake.jit.workers import Workers
 from skybake.optics.medium import Medium
 from skybake.preset import Planet
 from skybake.scattering.atmosphere import adopt_atmosphere, atmosphere_content
-from skybake.sequence.frame import Look, Outcome, finish_frame
+from skybake.sequence.frame import Outcome, PreviewSettings, finish_frame
 from skybake.sequence.plan import Frame, Plan
 from skybake.sequence.pool import Done, Run
 from skybake.sky.sky import Sky
@@ -33,17 +33,21 @@ Tables = tuple[Medium, str, bytes] | None
 
 
 @contextmanager
-def dask_pool(plan: Plan, look: Look, address: str) -> Iterator[Run]:
+def dask_pool(
+    plan: Plan, previews: PreviewSettings, address: str, *, skip_existing: bool = False
+) -> Iterator[Run]:
     """Bake frames on a cluster.
 
     Parameters
     ----------
     plan : Plan
         The sequence. Its files must lie in folders that the workers share.
-    look : Look
+    previews : PreviewSettings
         How its frames are shown.
     address : str
         Of the scheduler, as ``tcp://host:8786``.
+    skip_existing : bool, optional
+        Leave frames alone whose files are whole and of the same recipe.
 
     Raises
     ------
@@ -87,7 +91,8 @@ def dask_pool(plan: Plan, look: Look, address: str) -> Iterator[Run]:
                     replace(frame, output=frame.output.absolute(), preview=_absolute(frame)),
                     planets[frame.world],
                     tables,
-                    look,
+                    previews,
+                    skip_existing=skip_existing,
                     pure=False,
                 )
                 futures[future] = frame
@@ -101,11 +106,13 @@ def dask_pool(plan: Plan, look: Look, address: str) -> Iterator[Run]:
         client.close()
 
 
-def finish_on_worker(frame: Frame, planet: Planet, tables: Tables, look: Look) -> Outcome:
+def finish_on_worker(
+    frame: Frame, planet: Planet, tables: Tables, previews: PreviewSettings, *, skip_existing: bool
+) -> Outcome:
     """Bake a frame on a worker, with tables that came from afar."""
     if tables is not None:
         adopt_atmosphere(*tables)
-    return finish_frame(frame, planet, look, Workers(1))
+    return finish_frame(frame, planet, previews, Workers(1), skip_existing=skip_existing)
 
 
 def versions() -> dict[str, str]:

@@ -28,8 +28,8 @@ from skybake.sequence.plan import Frame
 
 
 @dataclass(frozen=True)
-class Look:
-    """How frames are shown, and which are baked.
+class PreviewSettings:
+    """How frames are shown.
 
     Attributes
     ----------
@@ -41,15 +41,12 @@ class Look:
         Without `ev`, show maps as their own exposure has them.
     thumbnail_widths : tuple of int
         Of the thumbnails of each frame. [pixel]
-    skip_existing : bool
-        Leave frames alone whose files are whole and of the same recipe.
     """
 
     view: str = "aces2"
     ev: float | None = None
     follows_map: bool = False
     thumbnail_widths: tuple[int, ...] = ()
-    skip_existing: bool = False
 
 
 @dataclass(frozen=True)
@@ -83,17 +80,26 @@ class Outcome:
     thumbnails: Mapping[int, npt.NDArray[np.uint8]]
 
 
-def finish_frame(frame: Frame, planet: Planet, look: Look, workers: Workers = ALL_CPUS) -> Outcome:
+def finish_frame(
+    frame: Frame,
+    planet: Planet,
+    previews: PreviewSettings,
+    workers: Workers = ALL_CPUS,
+    *,
+    skip_existing: bool = False,
+) -> Outcome:
     """Bake a frame, unless it is there.
 
     Parameters
     ----------
     frame, planet : Frame, Planet
         What to bake.
-    look : Look
-        What to show, and whether existing files count.
+    previews : PreviewSettings
+        What to show.
     workers : Workers, optional
         Who does the work.
+    skip_existing : bool, optional
+        Leave the frame alone if its files are whole and of the same recipe.
 
     Raises
     ------
@@ -102,8 +108,8 @@ def finish_frame(frame: Frame, planet: Planet, look: Look, workers: Workers = AL
     CancelledError
         If the workers were stopped; no file is left then.
     """
-    work = _Work(frame, planet, look, workers)
-    light = work.found_light() if look.skip_existing else None
+    work = _Work(frame, planet, previews, workers)
+    light = work.found_light() if skip_existing else None
     is_new = light is None
     workers.check()
     files = map_paths(frame.output, frame.settings)
@@ -113,7 +119,7 @@ def finish_frame(frame: Frame, planet: Planet, look: Look, workers: Workers = AL
             frame.output,
             preview=frame.preview,
             preview_ev=None if frame.preview is None else work.ev,
-            preview_view=look.view,
+            preview_view=previews.view,
             attributes=frame.attributes,
         )
         # As it will be when its files are found instead.
@@ -128,15 +134,17 @@ def finish_frame(frame: Frame, planet: Planet, look: Look, workers: Workers = AL
         files=files,
         sha256=tuple(_sha256(path) for path in files),
         ev=work.ev if frame.preview is not None else None,
-        thumbnails={width: work.thumbnail(width) for width in look.thumbnail_widths},
+        thumbnails={width: work.thumbnail(width) for width in previews.thumbnail_widths},
     )
 
 
 class _Work:
     """A frame's scene, made when it is needed."""
 
-    def __init__(self, frame: Frame, planet: Planet, look: Look, workers: Workers) -> None:
-        self._frame, self._planet, self._look, self._workers = frame, planet, look, workers
+    def __init__(
+        self, frame: Frame, planet: Planet, previews: PreviewSettings, workers: Workers
+    ) -> None:
+        self._frame, self._planet, self._previews, self._workers = frame, planet, previews, workers
 
     @cached_property
     def scene(self) -> Scene:
@@ -144,9 +152,9 @@ class _Work:
 
     @cached_property
     def ev(self) -> float:
-        if self._look.ev is not None:
-            return self._look.ev
-        if self._look.follows_map:
+        if self._previews.ev is not None:
+            return self._previews.ev
+        if self._previews.follows_map:
             return ev_from_luminance(self._frame.settings.encoding.white_luminance)
         return scene_ev(self.scene)
 
@@ -160,13 +168,13 @@ class _Work:
             if light is None:
                 return None
         if preview is not None:
-            texts = preview_texts(planet, settings, self.ev, self._look.view)
+            texts = preview_texts(planet, settings, self.ev, self._previews.view)
             if _attributes_with(texts, preview) is None:
                 return None
         return light
 
     def thumbnail(self, width: int) -> npt.NDArray[np.uint8]:
-        return thumbnail(self.scene, self.ev, self._look.view, width)
+        return thumbnail(self.scene, self.ev, self._previews.view, width)
 
 
 def _light_of_file(path: Path, wanted: Mapping[str, str]) -> Light | None:

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from skybake.baking.paths import map_paths
 from skybake.baking.write import check_targets
-from skybake.errors import OutputError
+from skybake.errors import ArgumentError, OutputError
 from skybake.formats.spec import Attribute
 from skybake.image.settings import MapSettings
 from skybake.preset import Planet
+from skybake.sequence.exposure_curve import ExposureCurve
 
 
 @dataclass(frozen=True)
@@ -62,19 +63,43 @@ class Plan:
         The worlds; one, unless something of the world changes over time.
     frames : tuple of Frame
         By ascending number.
+    output : Path or None
+        Pattern of the names of the maps, as ``sky.####.exr``.
+    exposure_curve : ExposureCurve or None
+        What has set the exposure of each frame.
     """
 
     planets: tuple[Planet, ...]
     frames: tuple[Frame, ...]
+    output: Path | None = None
+    exposure_curve: ExposureCurve | None = None
 
     def planet(self, frame: Frame) -> Planet:
         """World of a frame."""
         return self.planets[frame.world]
 
     def only(self, numbers: Sequence[int]) -> Plan:
-        """Return the plan with some of its frames."""
+        """Return the plan with some of its frames.
+
+        Numbers between the plan's frames are let pass: some farms name ranges without steps.
+
+        Raises
+        ------
+        ArgumentError
+            If there is none of them, or one lies before or beyond all frames.
+        """
         wanted = set(numbers)
-        return Plan(self.planets, tuple(one for one in self.frames if one.number in wanted))
+        frames = tuple(one for one in self.frames if one.number in wanted)
+        first, last = self.frames[0].number, self.frames[-1].number
+        outside = next((number for number in numbers if not first <= number <= last), None)
+        if outside is not None or not frames:
+            raise ArgumentError(
+                "{only}: must name frames of {first}-{last} (got {found})",
+                first=first,
+                last=last,
+                found=", ".join(map(str, numbers[:1])) if outside is None else outside,
+            )
+        return replace(self, frames=frames)
 
     def check(self, view: str, others: Iterable[Path] = ()) -> None:
         """Raise what can be said of all targets before anything is computed.

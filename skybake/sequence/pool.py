@@ -8,7 +8,7 @@ from concurrent.futures import Future, ThreadPoolExecutor, as_completed, wait
 from contextlib import contextmanager
 
 from skybake.jit.workers import Workers, cpu_count
-from skybake.sequence.frame import Look, Outcome, finish_frame
+from skybake.sequence.frame import Outcome, PreviewSettings, finish_frame
 from skybake.sequence.plan import Frame, Plan
 
 Done = tuple[Frame, Outcome | Exception]
@@ -19,18 +19,26 @@ _ANSWER_WITHIN = 0.4
 
 
 @contextmanager
-def local_pool(plan: Plan, look: Look, workers: int | None = None) -> Iterator[Run]:
+def local_pool(
+    plan: Plan,
+    previews: PreviewSettings,
+    *,
+    workers: int | None = None,
+    skip_existing: bool = False,
+) -> Iterator[Run]:
     """Bake several frames at once.
 
     Parameters
     ----------
     plan : Plan
         The sequence.
-    look : Look
+    previews : PreviewSettings
         How its frames are shown.
     workers : int, optional
         Frames at once; default one for each CPU. A single one uses all CPUs, which
         is slower but takes the memory of one frame.
+    skip_existing : bool, optional
+        Leave frames alone whose files are whole and of the same recipe.
 
     Notes
     -----
@@ -46,7 +54,14 @@ def local_pool(plan: Plan, look: Look, workers: int | None = None) -> Iterator[R
     def run(frames: Sequence[Frame]) -> Iterator[Done]:
         pending.clear()
         for frame in frames:
-            future = threads.submit(finish_frame, frame, plan.planet(frame), look, of_a_frame)
+            future = threads.submit(
+                finish_frame,
+                frame,
+                plan.planet(frame),
+                previews,
+                of_a_frame,
+                skip_existing=skip_existing,
+            )
             pending[future] = frame
         for future in as_completed(pending):
             error = future.exception()

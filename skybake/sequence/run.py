@@ -1,4 +1,4 @@
-"""Bakes a sequence: every frame that can be, and word of those that cannot."""
+"""Bakes frames: every one that can be, and word of those that cannot."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class Result:
     failures: dict[int, str]
 
 
-def bake_sequence(
+def bake_frames(
     plan: Plan, run: Run, *, retries: int = 0, tell: Callable[[Event], None] = lambda _: None
 ) -> Result:
     """Bake the frames of a plan.

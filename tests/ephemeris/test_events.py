@@ -25,7 +25,7 @@ def test_sunrise_noon_and_sunset_are_those_of_spa(place):
         day = date(2026, month, 20)
         reference = spa.transit_sunrise_sunset(
             np.array([datetime(2026, month, 20, tzinfo=UTC).timestamp()]),
-            *map(math.degrees, place),
+            *map(math.degrees, (place.latitude, place.longitude)),
             delta_t=spa.calculate_deltat(2026, month),
             numthreads=1,
         )

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from skybake.ephemeris import mars
+from skybake.ephemeris.place import SITES
 from skybake.errors import InputError
 
 EXAMPLE = datetime(2000, 1, 6, tzinfo=UTC)
@@ -146,7 +147,7 @@ def test_the_vertical_leaves_the_radius_by_a_third_of_a_degree_at_most():
         45.338, abs=1e-3
     )
     # Viking 2 in both kinds (Mayo et al. 1977).
-    utopia = mars.planetographic_latitude(mars.SITES["utopia"].latitude)
+    utopia = mars.planetographic_latitude(SITES["utopia"].latitude)
     assert math.degrees(utopia) == pytest.approx(47.97, abs=0.01)
 
 
@@ -197,12 +198,12 @@ def test_years_for_which_the_series_was_not_fitted_are_refused(year):
 )
 def test_the_rovers_landed_in_the_afternoon(site, time, hours):
     now = mars.mars_time(time)
-    mean = 24.0 * (now.sol_date % 1.0) + math.degrees(mars.SITES[site].longitude) / 15.0
+    mean = 24.0 * (now.sol_date % 1.0) + math.degrees(SITES[site].longitude) / 15.0
     assert mean % 24.0 == pytest.approx(hours, abs=0.06)
 
 
 def test_sites_are_on_the_map():
-    assert list(mars.SITES) == sorted(mars.SITES)
-    for place in mars.SITES.values():
+    assert list(SITES) == sorted(SITES)
+    for place in SITES.values():
         assert abs(place.latitude) < math.pi / 2
         assert abs(place.longitude) <= math.pi

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from datetime import date
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import click
 
@@ -176,6 +176,19 @@ def ramp(read: Callable[[str], float]) -> Callable[[str], Ramp]:
     return read_ramp
 
 
+_NUMBER = r"[+-]?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?"
+_RANGE = re.compile(rf"({_NUMBER})\.\.({_NUMBER})", re.ASCII)
+
+
+def number_range(value: Any) -> Any:
+    """Read a text such as ``0.1..0.3`` as a ramp; anything else stays what it is."""
+    found = _RANGE.fullmatch(value) if isinstance(value, str) else None
+    if found is None:
+        return value
+    first, last = float(found[1]), float(found[2])
+    return Ramp(first, last) if math.isfinite(first) and math.isfinite(last) else value
+
+
 def frames(text: str) -> tuple[int, ...]:
     """Read frame numbers such as ``1-96`` or ``1-100x5,150``."""
     try:
@@ -232,29 +245,3 @@ def _parse(text: str, parse: Callable[[str], float]) -> float:
         return parse(text)
     except InputError as error:
         raise click.BadParameter(str(error)) from error
-
-
-preset_option = click.option(
-    "--preset",
-    default="earth",
-    show_default=True,
-    metavar="NAME|PATH",
-    help="World: a name from 'skybake presets list', or a TOML file of your own.",
-)
-sun_option = click.option(
-    "--sun",
-    "sun_elevation",
-    metavar="ANGLE",
-    type=elevation,
-    default="30deg",
-    show_default=True,
-    help="Geometric elevation of the sun's centre at the observer, -90deg to 90deg.",
-)
-altitude_option = click.option(
-    "--altitude",
-    metavar="LENGTH",
-    type=altitude,
-    default="0m",
-    show_default=True,
-    help="Of the observer above the ground.",
-)

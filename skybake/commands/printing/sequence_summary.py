@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from skybake.commands.report import notice
+from skybake.commands.printing.notices import notice
 
 if TYPE_CHECKING:
     from skybake.sequence.plan import Plan

@@ -5,55 +5,62 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-import click
-
-from skybake.commands.course import output_pattern
-from skybake.commands.emit import HOW, arguments
 from skybake.errors import OutputError
 from skybake.formats.partial import check_target
 from skybake.sequence.animation import STILL_WIDTH, check_animation, write_animation
 from skybake.sequence.frame import Outcome
-from skybake.sequence.manifest import (
-    FrameRecord,
-    SequenceHeader,
-    write_csv,
-    write_manifest,
-)
+from skybake.sequence.frames import FramePattern
+from skybake.sequence.manifest import FrameRecord, SequenceHeader, write_csv, write_manifest
 from skybake.sequence.plan import Frame, Plan
 from skybake.sequence.run import Result
 from skybake.sequence.sheet import TILE_WIDTH, check_sheet, contact_sheet
 from skybake.sequence.usd import check_usd, write_usd
 
 
+@dataclass(frozen=True)
 class Products:
     """Files about a sequence, written when its frames are done.
 
-    Parameters
+    Attributes
     ----------
     plan : Plan
         All of the sequence.
-    context : click.Context
-        With the options of ``skybake sequence``.
+    manifests : tuple of Path
+        Times, sun, light, files and digests of all frames: ``.json``, ``.csv`` or
+        ``.usda``.
+    contact_sheet : Path or None
+        One picture with all frames side by side, ``.png``.
+    animation : Path or None
+        A moving picture, ``.webp`` or ``.gif``.
+    fps : float
+        Frames per second of the moving picture and of USD.
+    command : tuple of str
+        A command that bakes the same frames, for the manifest.
     """
 
-    def __init__(self, plan: Plan, context: click.Context) -> None:
-        options = context.params
-        self._plan = plan
-        self._manifests = list(options["manifests"]) or _default_manifests(plan, options)
-        self._sheet: Path | None = options["contact_sheet"]
-        self._animation: Path | None = options["animate"]
-        self._curve: Path | None = options["exposure_curve"]
-        self._header = _header(plan, options["fps"], arguments(context, HOW))
+    plan: Plan
+    manifests: tuple[Path, ...] = ()
+    contact_sheet: Path | None = None
+    animation: Path | None = None
+    fps: float = 24.0
+    command: tuple[str, ...] = ()
 
     @property
     def paths(self) -> list[Path]:
         """All files."""
-        pictures = (self._animation, self._sheet)
-        return [*self._manifests, *(path for path in pictures if path is not None)]
+        pictures = (self.animation, self.contact_sheet)
+        return [*self.manifests, *(path for path in pictures if path is not None)]
+
+    @property
+    def thumbnail_widths(self) -> tuple[int, ...]:
+        """Widths of the thumbnails of each frame that the pictures consist of. [pixel]"""
+        widths = ((self.contact_sheet, TILE_WIDTH), (self.animation, STILL_WIDTH))
+        return tuple(width for path, width in widths if path is not None)
 
     def check(self) -> None:
         """Raise what can be said of the files before anything is computed.
@@ -63,26 +70,27 @@ class Products:
         SkybakeError
             If one cannot be written.
         """
-        for path in self._manifests:
-            if self._curve is not None and path.resolve() == self._curve.resolve():
+        curve = None if self.plan.exposure_curve is None else self.plan.exposure_curve.path
+        for path in self.manifests:
+            if curve is not None and path.resolve() == curve.resolve():
                 raise OutputError(f"{path}: must not be the exposure curve, which is read")
             if path.suffix.lower() == ".usda":
-                maps = (_seen_from(path.parent, frame.output) for frame in self._plan.frames)
-                check_usd(path, self._header.projection, maps)
+                maps = (_seen_from(path.parent, frame.output) for frame in self.plan.frames)
+                check_usd(path, _header(self).projection, maps)
             else:
                 check_target(path)
-        if self._sheet is not None:
-            check_sheet(self._sheet)
-        if self._animation is not None:
-            check_animation(self._animation, self._header.fps)
+        if self.contact_sheet is not None:
+            check_sheet(self.contact_sheet)
+        if self.animation is not None:
+            check_animation(self.animation, self.fps)
 
     def write(self, result: Result) -> list[Path]:
         """Write the files and return their names; of no frames none."""
         outcomes = result.outcomes
         if not outcomes:
             return []
-        frames = {frame.number: frame for frame in self._plan.frames}
-        for path in self._manifests:
+        frames = {frame.number: frame for frame in self.plan.frames}
+        for path in self.manifests:
             records = [
                 _record(frames[outcome.number], outcome, path.parent) for outcome in outcomes
             ]
@@ -90,30 +98,29 @@ class Products:
             if suffix == ".csv":
                 write_csv(path, records)
             elif suffix == ".usda":
-                write_usd(path, self._header, records)
+                write_usd(path, _header(self), records)
             else:
-                write_manifest(path, self._header, records)
-        if self._animation is not None:
+                write_manifest(path, _header(self), records)
+        if self.animation is not None:
             stills = [outcome.thumbnails[STILL_WIDTH] for outcome in outcomes]
-            write_animation(self._animation, stills, self._header.fps)
-        if self._sheet is not None:
+            write_animation(self.animation, stills, self.fps)
+        if self.contact_sheet is not None:
             tiles = [outcome.thumbnails[TILE_WIDTH] for outcome in outcomes]
-            labels = [_label(frames[outcome.number]) for outcome in outcomes]
-            contact_sheet(self._sheet, tiles, labels, title=self._plan.planets[0].title)
+            labels = [_tile_label(frames[outcome.number]) for outcome in outcomes]
+            contact_sheet(self.contact_sheet, tiles, labels, title=self.plan.planets[0].title)
         return self.paths
 
 
-def _default_manifests(plan: Plan, options: Mapping[str, Any]) -> list[Path]:
-    """JSON beside the maps; a part of a sequence would take that of another part."""
-    if options["only"] is not None:
-        return []
-    pattern = output_pattern(options)
+def default_manifest(plan: Plan) -> Path:
+    """Name of the manifest of a plan: JSON beside the maps."""
+    pattern = FramePattern.parse(str(plan.output or plan.frames[0].output))
     before = pattern.before.replace("{face}", "").removesuffix(".exr").removesuffix(".hdr")
     stem = before.rstrip("._-")
-    return [pattern.folder / f"{stem or plan.planets[0].name}.sequence.json"]
+    return pattern.folder / f"{stem or plan.planets[0].name}.sequence.json"
 
 
-def _header(plan: Plan, fps: float, command: list[str]) -> SequenceHeader:
+def _header(products: Products) -> SequenceHeader:
+    plan = products.plan
     planet, settings = plan.planets[0], plan.frames[0].settings
     maps = [frame.settings.recipe() for frame in plan.frames]
     worlds = [planet.recipe for planet in plan.planets]
@@ -123,8 +130,8 @@ def _header(plan: Plan, fps: float, command: list[str]) -> SequenceHeader:
         colorspace=settings.encoding.colorspace,
         sun_disc=settings.lighting.sun_disc,
         sun_angular_diameter_deg=math.degrees(2.0 * planet.star.angular_radius),
-        recipe={"map": _common(maps), "preset": _common(worlds), "command": command},
-        fps=fps,
+        recipe={"map": _common(maps), "preset": _common(worlds), "command": list(products.command)},
+        fps=products.fps,
     )
 
 
@@ -169,7 +176,7 @@ def _seen_from(folder: Path, path: Path) -> str:
     return Path(os.path.relpath(path, folder)).as_posix()
 
 
-def _label(frame: Frame) -> str:
+def _tile_label(frame: Frame) -> str:
     sun = f"sun {math.degrees(frame.settings.lighting.sun_elevation):.1f} deg"
     time = (frame.label or str(frame.number)).removesuffix(":00")
     if frame.label and "skybake:time" in frame.attributes:

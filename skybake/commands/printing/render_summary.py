@@ -1,52 +1,16 @@
-"""What ``skybake render`` tells: progress on stderr, the result on stdout."""
+"""What ``skybake render`` prints of a map that is baked."""
 
 from __future__ import annotations
 
 import json
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 if TYPE_CHECKING:
     from skybake.baking import Baked
-    from skybake.commands.moment import Moment
+    from skybake.ephemeris.moment import Moment
     from skybake.image.settings import MapSettings
-
-_STEPS = 1000
-
-
-def announce(output: Path) -> None:
-    """Say what is baked, and on the first run why it takes longer."""
-    announce_kernels()
-    if not sys.stderr.isatty():
-        notice(f"baking {output}")
-
-
-def announce_kernels() -> None:
-    """Say on the first run why it takes longer."""
-    from skybake.jit.cache import is_warm
-
-    if not is_warm():
-        notice("compiling kernels, once for this version")
-
-
-def notice(line: str) -> None:
-    """Say what takes long."""
-    click.echo(f"skybake: {line}", err=True)
-
-
-@contextmanager
-def progress_bar(*, quiet: bool) -> Iterator[Callable[[float], None] | None]:
-    """Yield a function that takes the share done, or None without a terminal."""
-    if quiet or not sys.stderr.isatty():
-        yield None
-        return
-    with click.progressbar(length=_STEPS, label="baking", file=sys.stderr) as bar:
-        yield lambda share: bar.update(round(share * _STEPS) - bar.pos)
 
 
 def print_summary(baked: Baked, seconds: float) -> None:

@@ -1,24 +1,36 @@
-"""What ``skybake sequence`` tells while it works, for people, for logs and for farms."""
+"""Progress while maps are baked, for people, for logs and for farms."""
 
 from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from skybake.commands.report import notice
+from skybake.commands.printing.notices import notice
 
 if TYPE_CHECKING:
     from skybake.sequence.run import Event
 
+_STEPS = 1000
+
 STYLES = ("auto", "bar", "plain", "openjd", "none")
 
 
-class Progress:
+@contextmanager
+def map_progress(*, quiet: bool) -> Iterator[Callable[[float], None] | None]:
+    """Yield a function that takes the share done, or None without a terminal."""
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    with click.progressbar(length=_STEPS, label="baking", file=sys.stderr) as bar:
+        yield lambda share: bar.update(round(share * _STEPS) - bar.pos)
+
+
+class FrameProgress:
     """Tells of frames as they are done.
 
     Parameters
@@ -63,12 +75,12 @@ class Progress:
 
 
 @contextmanager
-def progress(style: str, total: int, *, quiet: bool) -> Iterator[Progress]:
+def frame_progress(style: str, total: int, *, quiet: bool) -> Iterator[FrameProgress]:
     """Yield what tells of frames; ``auto`` is a bar on a terminal and lines elsewhere."""
     if style == "auto":
         style = "none" if quiet else "bar" if sys.stderr.isatty() else "plain"
     if style != "bar":
-        yield Progress(style)
+        yield FrameProgress(style)
         return
     with click.progressbar(
         length=total,
@@ -79,4 +91,4 @@ def progress(style: str, total: int, *, quiet: bool) -> Iterator[Progress]:
         show_percent=False,
         show_pos=True,
     ) as bar:
-        yield Progress(style, bar)
+        yield FrameProgress(style, bar)

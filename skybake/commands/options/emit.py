@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from skybake.commands import parameters
-from skybake.commands.world import read_value
+from skybake.commands.options import values
+from skybake.commands.options.rules import Needs, options_together
+from skybake.commands.options.world import read_value
 
-Command = TypeVar("Command", bound=Callable[..., Any])
+if TYPE_CHECKING:
+    from skybake.sequence.plan import Plan
 
-_GIVEN = "skybake.commands.emit.given"
+_GIVEN = "skybake.commands.options.emit.given"
 
 # What only concerns the machine that gathers the frames, or this one call.
 _LEFT_OUT = {
@@ -39,15 +41,7 @@ class RememberingCommand(click.Command):
 
 _CHUNK = 10
 
-
-def emit_options(command: Command) -> Command:
-    """Add the options that emit commands."""
-    for option in reversed(_OPTIONS):
-        command = option(command)
-    return command
-
-
-_OPTIONS = (
+emit_options = options_together(
     click.option(
         "--emit-commands",
         is_flag=True,
@@ -56,7 +50,7 @@ _OPTIONS = (
     click.option(
         "--emit-openjd",
         metavar="FOLDER",
-        type=parameters.folder,
+        type=values.folder,
         help="Write an Open Job Description with a task for each chunk, and bake none.",
     ),
     click.option(
@@ -74,42 +68,52 @@ def is_asked(options: Mapping[str, Any]) -> bool:
     return options["emit_commands"] or options["emit_openjd"] is not None
 
 
-def emit(context: click.Context, numbers: Sequence[int]) -> bool:
-    """Print or write commands if the options ask for it; whether they did.
+def emit_needs(options: Mapping[str, Any]) -> Needs:
+    """Return what the options of emitted commands need, and those that they leave no effect."""
+    emits = is_asked(options)
+    return {
+        "chunk_size": (emits, "--emit-commands or --emit-openjd"),
+        "dry_run": (not emits, "no --emit-commands or --emit-openjd beside it"),
+    }
+
+
+def emit(context: click.Context, plan: Plan) -> None:
+    """Print or write the commands that the options ask for.
 
     Raises
     ------
     SkybakeError
         If a format cannot hold them, or a file cannot be written.
     """
-    options = context.params
-    if not is_asked(options):
-        return False
-
     from skybake.sequence import farm, frames
 
+    options = context.params
+    numbers = [frame.number for frame in plan.frames]
     if options["only"] is not None:
         numbers = [number for number in numbers if number in set(options["only"])]
-    given, size = arguments(context), options["chunk_size"] or _CHUNK
+    given, size = command_from_options(context, plan), options["chunk_size"] or _CHUNK
     lines = farm.commands(given, frames.chunks(numbers, size))
     if options["emit_openjd"] is not None:
-        name = options["output"].name
+        name = "" if plan.output is None else plan.output.name
         words = [*given, "--progress=openjd"]
         template = farm.write_openjd(options["emit_openjd"], words, numbers, size, name)
         if not options["emit_commands"]:
             lines = [str(template)]
     for line in lines:
         click.echo(line)
-    return True
 
 
-def arguments(context: click.Context, leave_out: Collection[str] = ()) -> list[str]:
+def command_from_options(
+    context: click.Context, plan: Plan, leave_out: Collection[str] = ()
+) -> list[str]:
     """Return a command that bakes the same frames from any folder, without ``--only``.
 
     Parameters
     ----------
     context : click.Context
         With the options of ``skybake sequence``.
+    plan : Plan
+        What they ask for.
     leave_out : collection of str, optional
         Names of options that the command shall not have either.
     """
@@ -124,10 +128,10 @@ def arguments(context: click.Context, leave_out: Collection[str] = ()) -> list[s
         if name in left_out or name not in given:
             continue
         option = max(parameter.opts, key=len)
-        values = given[name] if parameter.multiple else [given[name]]
-        words += [_word(option, name, value) for value in values]
-    if "output" not in given:
-        words.append(f"--output={context.params['output'].absolute()}")
+        texts = given[name] if parameter.multiple else [given[name]]
+        words += [_word(option, name, text) for text in texts]
+    if "output" not in given and plan.output is not None:
+        words.append(f"--output={plan.output.absolute()}")
     return words
 
 

@@ -1,0 +1,160 @@
+"""The options of every command that bakes maps: what kind, and how it is stored."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from skybake.commands.options import values
+from skybake.commands.options.rules import Needs, options_together
+from skybake.errors import InputError
+
+if TYPE_CHECKING:
+    from skybake.image.settings import MapSettings
+
+_SHAPES = {"cube_layout": "layout", "fov": "fov"}
+_ENCODINGS = (
+    *("colorspace", "units", "ev", "pixel", "compression", "clamp_negative"),
+    *("sun_disc", "method"),
+)
+
+map_options = options_together(
+    click.option(
+        "--projection",
+        type=click.Choice(values.PROJECTIONS),
+        default="equirect",
+        show_default=True,
+        help="Kind of map; fisheye is equidistant, perspective a camera's picture.",
+    ),
+    click.option(
+        "--size",
+        metavar="WxH|EDGE",
+        type=values.size,
+        show_default="2048x1024, 1024 for a cubemap's face or a fisheye, 1920x1080 for perspective",
+        help="Width and height, 2:1 for an equirect map, or edge of a cubemap's face or a fisheye.",
+    ),
+    click.option(
+        "--fov",
+        metavar="ANGLE",
+        type=values.field_of_view,
+        show_default="180deg for a fisheye, 50deg for perspective",
+        help="Angle that the width of a fisheye or perspective picture covers.",
+    ),
+    click.option(
+        "--look",
+        metavar="AZIMUTH,ELEVATION",
+        type=values.look,
+        show_default="180,90 for a fisheye, 180,0 for perspective",
+        help="Where the middle of such a picture looks.",
+    ),
+    click.option(
+        "--cube-layout",
+        type=click.Choice(values.CUBE_LAYOUTS),
+        show_default="faces",
+        help="Six files px nx py ny pz nz, one horizontal cross, or one OpenEXR cube.",
+    ),
+    click.option(
+        "--colorspace",
+        type=click.Choice(values.COLOUR_SPACES),
+        default="lin_rec709",
+        show_default=True,
+        help="Linear, scene-referred space of the pixels.",
+    ),
+    click.option(
+        "--units",
+        type=click.Choice(values.UNITS),
+        show_default="ev15",
+        help="What a pixel value of 1 stands for: 1.2 * 2^15 cd/m2, or 1 cd/m2.",
+    ),
+    click.option(
+        "--ev",
+        metavar="N",
+        type=float,
+        help="Let a pixel value of 1 stand for 1.2 * 2^N cd/m2 instead.",
+    ),
+    click.option(
+        "--pixel",
+        type=click.Choice(values.PIXELS),
+        show_default="auto",
+        help="Stored type of an EXR; auto takes half where it holds every value.",
+    ),
+    click.option(
+        "--compression",
+        metavar="NAME[:LEVEL]",
+        show_default="zip",
+        help="Of an EXR: none, rle, zips, zip[:1-9], piz, pxr24, b44, b44a, dwaa[:0-135], ...",
+    ),
+    click.option("--clamp-negative", is_flag=True, help="Set negative values, out of gamut, to 0."),
+    click.option(
+        "--sun-disc",
+        type=click.Choice(values.SUN_DISCS),
+        default="include",
+        show_default=True,
+        help="Whether the map holds the sun's disc, or nothing else.",
+    ),
+    click.option(
+        "--method",
+        type=click.Choice(values.METHODS),
+        default="full",
+        show_default=True,
+        help="Light transport: all orders of scattering, Hillaire's closure, or as a check single "
+        "scattering by direct quadrature.",
+    ),
+)
+
+
+def map_needs(options: Mapping[str, Any]) -> Needs:
+    """Return what `map_options` need to have an effect, beside ``--output``.
+
+    Raises
+    ------
+    click.UsageError
+        If the format of the output cannot hold the map.
+    """
+    is_radiance = options["output"] is not None and options["output"].suffix.lower() == ".hdr"
+    if is_radiance and options["cube_layout"] == "exr":
+        raise click.UsageError("--cube-layout exr: needs an .exr output")
+    return {
+        "cube_layout": (options["projection"] == "cubemap", "--projection cubemap"),
+        **dict.fromkeys(
+            ("fov", "look"),
+            (
+                options["projection"] in {"fisheye", "perspective"},
+                "--projection perspective or fisheye",
+            ),
+        ),
+        "pixel": (not is_radiance, "an .exr output"),
+        "compression": (not is_radiance, "an .exr output"),
+        "units": (options["ev"] is None, "no --ev beside it"),
+    }
+
+
+def map_settings(options: Mapping[str, Any], **others: float) -> MapSettings:
+    """Return the settings of a map.
+
+    Parameters
+    ----------
+    options : mapping
+        With the values of `map_options`.
+    **others : float
+        Where the sun and the observer are, by the names of `skybake.image.settings`.
+
+    Raises
+    ------
+    click.UsageError
+        If a value is out of range.
+    """
+    from skybake.image import settings
+
+    given = {name: options[name] for name in _ENCODINGS if options[name] is not None}
+    shape = {own: options[name] for name, own in _SHAPES.items() if options[name] is not None}
+    if options["look"] is not None:
+        shape["azimuth"], shape["elevation"] = options["look"]
+    try:
+        return settings.map_settings(
+            options["projection"], options["size"], **shape, **given, **others
+        )
+    except InputError as error:
+        raise click.UsageError(f"--{error}") from error

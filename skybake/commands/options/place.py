@@ -1,0 +1,110 @@
+"""The options that say where the sun is seen from and by which clock."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from skybake.commands.options import values
+from skybake.commands.options.rules import (
+    Needs,
+    is_given,
+    option_names,
+    options_together,
+    usage_faults,
+)
+from skybake.ephemeris.place import SITES, check_planet, find_place
+
+if TYPE_CHECKING:
+    from skybake.ephemeris.place import Place
+
+place_options = options_together(
+    click.option(
+        "--lat",
+        "latitude",
+        metavar="ANGLE",
+        type=values.latitude,
+        help="Latitude: 48.8566, 48.8566N or -54.8deg.",
+    ),
+    click.option(
+        "--lon",
+        "longitude",
+        metavar="ANGLE",
+        type=values.longitude,
+        help="Longitude, positive in the east: 2.3522, 78.47W or -78.47deg.",
+    ),
+    click.option(
+        "--site",
+        type=click.Choice(tuple(SITES)),
+        help="Place on Mars instead.",
+    ),
+    click.option(
+        "--ls",
+        "solar_longitude",
+        metavar="ANGLE",
+        type=values.solar_longitude,
+        help="Season on Mars, the sun's longitude Ls; times are then of local true solar time.",
+    ),
+    click.option(
+        "--tz",
+        "zone",
+        metavar="AREA/CITY",
+        help="Time zone of times without an offset and of --date, such as Europe/Paris.",
+    ),
+    click.option(
+        "--date",
+        "day",
+        metavar="YYYY-MM-DD",
+        type=values.day,
+        help="Local date of sunset, noon and the like.",
+    ),
+    click.option(
+        "--refraction",
+        is_flag=True,
+        help="Lift the sun as Earth's air does, by half a degree at the horizon.",
+    ),
+)
+
+
+def place_needs(*, is_timed: bool, time: str) -> Needs:
+    """Return what the options of a place need: `time`, the option or options of a time.
+
+    Where these are given, the sun needs no angles.
+    """
+    where = ("latitude", "longitude", "site", "solar_longitude", "zone", "day", "refraction")
+    return dict.fromkeys(where, (is_timed, time)) | dict.fromkeys(
+        ("sun_elevation", "sun_azimuth"), (not is_timed, f"no {time} beside it")
+    )
+
+
+def place_from_options(context: click.Context, time: str) -> Place:
+    """Return where the sun is seen from.
+
+    Parameters
+    ----------
+    context : click.Context
+        With `place_options` and ``--preset``.
+    time : str
+        The option that asks for a time.
+
+    Raises
+    ------
+    click.UsageError
+        If there is too little or too much of a place, or it is on another planet than
+        the preset's.
+    PresetError
+        If the preset cannot be read.
+    """
+    from skybake.preset import planet_name
+
+    options = context.params
+    names = ("site", "solar_longitude", "latitude", "longitude")
+    with usage_faults(context, place=time):
+        place = find_place(**{name: options[name] for name in names})
+    given = next(
+        name for name in ("site", "solar_longitude", "latitude") if is_given(context, name)
+    )
+    with usage_faults(context, place=option_names(context)[given]):
+        check_planet(place, planet_name(options["preset"]))
+    return place

@@ -1,0 +1,103 @@
+"""The options that put the sun where it stands at a time, or at many."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from skybake.commands.options import values
+from skybake.commands.options.place import place_from_options, place_needs, place_options
+from skybake.commands.options.rules import Needs, options_together, usage_faults
+
+if TYPE_CHECKING:
+    from skybake.ephemeris.moment import Moment, TimeSpan
+
+_HOW = ("zone", "day", "solar_longitude", "refraction")
+
+moment_options = options_together(
+    click.option(
+        "--time",
+        metavar="TIME",
+        help="Put the sun where it stands at --lat and --lon: 2026-06-21T04:00Z, or sunset+10min; "
+        "on Mars at --site, or 16:30 with --ls.",
+    ),
+    place_options,
+)
+
+span_options = options_together(
+    click.option(
+        "--from",
+        "start",
+        metavar="TIME",
+        help="Put the sun where it stands at --lat and --lon from here on: 2026-06-21T04:00Z, or "
+        "sunrise-1h; on Mars at --site, or 04:00 with --ls.",
+    ),
+    click.option("--to", "end", metavar="TIME", help="Time of the last frame."),
+    click.option(
+        "--every",
+        metavar="DURATION",
+        type=values.duration,
+        help="Time between frames, as 10min; by default --frames are spread evenly.",
+    ),
+    place_options,
+)
+
+
+def moment_needs(context: click.Context) -> Needs:
+    """Return what `moment_options` need to have an effect."""
+    return place_needs(is_timed=context.params["time"] is not None, time="--time")
+
+
+def moment_from_options(context: click.Context) -> Moment | None:
+    """Return the moment that ``--time`` asks for.
+
+    Raises
+    ------
+    click.UsageError
+        If there is no such time, or an option that would have no effect.
+    PresetError
+        If the preset cannot be read.
+    """
+    options = context.params
+    if options["time"] is None:
+        return None
+
+    from skybake.ephemeris.moment import sun_at
+
+    place = place_from_options(context, "--time")
+    with usage_faults(context):
+        return sun_at(options["time"], place, **{name: options[name] for name in _HOW})
+
+
+def span_needs(context: click.Context) -> Needs:
+    """Return what `span_options` need to have an effect."""
+    start, end = context.params["start"], context.params["end"]
+    is_timed = start is not None or end is not None
+    return {
+        "start": (end is not None, "--to beside it"),
+        "end": (start is not None, "--from beside it"),
+        "every": (is_timed, "--from and --to"),
+        **place_needs(is_timed=is_timed, time="--from and --to"),
+    }
+
+
+def span_from_options(context: click.Context) -> TimeSpan | None:
+    """Return the span of time that ``--from`` and ``--to`` ask for.
+
+    Raises
+    ------
+    click.UsageError
+        If its place is none.
+    PresetError
+        If the preset cannot be read.
+    """
+    options = context.params
+    if options["start"] is None:
+        return None
+
+    from skybake.ephemeris.moment import TimeSpan
+
+    place = place_from_options(context, "--from")
+    names = ("start", "end", "every", *_HOW)
+    return TimeSpan(place=place, **{name: options[name] for name in names})

@@ -1,0 +1,28 @@
+"""Lines on standard error about what takes long."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+
+def announce(output: Path) -> None:
+    """Say what is baked, and on the first run why it takes longer."""
+    announce_kernels()
+    if not sys.stderr.isatty():
+        notice(f"baking {output}")
+
+
+def announce_kernels() -> None:
+    """Say on the first run why it takes longer."""
+    from skybake.jit.cache import is_warm
+
+    if not is_warm():
+        notice("compiling kernels, once for this version")
+
+
+def notice(line: str) -> None:
+    """Say what takes long."""
+    click.echo(f"skybake: {line}", err=True)

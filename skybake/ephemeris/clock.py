@@ -1,0 +1,130 @@
+"""How texts of times are meant: where, by which clock, on which day or in which season."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from datetime import date, datetime, tzinfo
+
+from skybake.ephemeris.place import Place
+from skybake.ephemeris.times import find_zone, kind_of, parse_end, parse_time
+from skybake.errors import ArgumentError, InputError
+
+
+@dataclass(frozen=True)
+class Clock:
+    """How texts of times are meant.
+
+    Attributes
+    ----------
+    place : Place
+        Where.
+    zone : str or None
+        Time zone of times without an offset.
+    day : date or None
+        Local date of events.
+    solar_longitude : float or None
+        Season of Mars; times are then of local true solar time. [rad]
+    refraction : bool
+        Whether the sun is lifted as by Earth's air.
+    """
+
+    place: Place
+    zone: str | None
+    day: date | None
+    solar_longitude: float | None
+    refraction: bool
+
+    @property
+    def is_on_mars(self) -> bool:
+        """Whether the place is."""
+        return self.place.planet == "mars"
+
+    def check(self, texts: Mapping[str, str]) -> None:
+        """Refuse what has no effect beside the rest, and ask for what is missing.
+
+        Parameters
+        ----------
+        texts : mapping of str to str
+            Times by the names of their arguments: one, or start and end.
+
+        Raises
+        ------
+        ArgumentError
+            That names the arguments.
+        """
+        if self.is_on_mars and self.refraction:
+            raise ArgumentError("{refraction}: is that of Earth's air (the place is on Mars)")
+        if self.solar_longitude is None:
+            self._check_kinds(texts)
+            return
+        if not self.is_on_mars:
+            raise ArgumentError("{solar_longitude}: is a season of Mars (the place is on Earth)")
+        if not 0.0 <= self.solar_longitude <= 2.0 * math.pi + 1e-9:
+            raise ArgumentError(
+                "{solar_longitude}: must be from 0deg to 360deg (got {angle:g}deg)",
+                angle=math.degrees(self.solar_longitude),
+            )
+        for name, value in (("zone", self.zone), ("day", self.day)):
+            if value is not None:
+                raise ArgumentError(
+                    f"{{{name}}}: needs no {{solar_longitude}}, which goes with solar time"
+                )
+
+    def _check_kinds(self, texts: Mapping[str, str]) -> None:
+        kinds = {name: kind_of(text) for name, text in texts.items()}
+        for name, text in texts.items():
+            if self.is_on_mars and kinds[name] in {"event", "unknown"}:
+                raise ArgumentError(
+                    f"{{{name}}}: on Mars must be as 2026-06-21T04:00Z, or as 16:30 with "
+                    "{solar_longitude} (got {text!r})",
+                    text=text,
+                )
+            if kinds[name] == "event" and self.day is None:
+                raise ArgumentError(f"{{{name}}} {{text}}: needs {{day}}", text=text)
+            if kinds[name] == "local" and self.zone is None:
+                raise ArgumentError(
+                    f"{{{name}}}: needs an offset, as {{text}}Z or {{text}}+02:00, or {{zone}}, "
+                    "since clocks differ",
+                    text=text,
+                )
+        found = set(kinds.values())
+        if self.day is not None and found <= {"local", "absolute"}:
+            raise ArgumentError(f"{{day}}: needs {{{next(iter(texts))}}} sunset or the like")
+        # The labels of a span are by the local clock in any case.
+        if self.zone is not None and len(texts) == 1 and found == {"absolute"}:
+            raise ArgumentError("{zone}: needs a time without an offset of its own")
+
+    def bounds(self, texts: Mapping[str, str]) -> tuple[tzinfo | None, datetime, datetime]:
+        """Return the local clock, the first time and the last, of what `check` has let pass.
+
+        Raises
+        ------
+        ArgumentError
+            If there are no such times.
+        """
+        zone = None
+        if self.zone is not None:
+            with argument("zone"):
+                zone = find_zone(self.zone)
+        place = None if self.is_on_mars else self.place
+        (first, text), *others = texts.items()
+        with argument(first):
+            start = end = parse_time(text, place=place, zone=zone, day=self.day)
+        for last, text in others:
+            with argument(last):
+                end = parse_end(text, start, place=place, zone=zone, day=self.day)
+        return zone, start, end
+
+
+@contextmanager
+def argument(name: str) -> Iterator[None]:
+    """Put the name of an argument before the fault of its value."""
+    try:
+        yield
+    except ArgumentError:
+        raise
+    except InputError as error:
+        raise ArgumentError(f"{{{name}}}: {{cause}}", cause=error) from error

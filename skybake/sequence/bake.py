@@ -1,0 +1,155 @@
+"""Bakes a planned sequence: checks, tables that all frames share, and what bakes the frames."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Literal
+
+from skybake.sequence.dask import dask_pool
+from skybake.sequence.frame import PreviewSettings
+from skybake.sequence.plan import Plan
+from skybake.sequence.pool import Run, local_pool
+from skybake.sequence.products import Products
+from skybake.sequence.run import Event, Result, bake_frames, common_ev, prepare
+
+PreviewEv = float | Literal["auto", "adapt"]
+
+
+def bake_sequence(
+    plan: Plan,
+    *,
+    only: Sequence[int] | None = None,
+    products: Products | None = None,
+    view: str = "aces2",
+    preview_ev: PreviewEv = "auto",
+    skip_existing: bool = False,
+    retries: int = 0,
+    workers: int | None = None,
+    dask: str | None = None,
+    tell: Callable[[Event], None] | None = None,
+    notice: Callable[[str], None] | None = None,
+) -> Result:
+    """Bake the frames of a plan.
+
+    Parameters
+    ----------
+    plan : Plan
+        Of `skybake.plan_sequence`.
+    only : sequence of int, optional
+        Frames to bake, if not all.
+    products : Products, optional
+        What will be written about the sequence: their names are checked and their
+        thumbnails made. Call its ``write`` with the result.
+    view : {"aces2", "aces1"}, optional
+        Display transform of all pictures.
+    preview_ev : float, "auto" or "adapt", optional
+        Exposure value of all pictures at ISO 100; auto suits the frame with the highest
+        sun, or the maps' own exposure where a curve sets it; adapt finds one for each.
+    skip_existing : bool, optional
+        Leave frames alone whose files are whole and of the same recipe.
+    retries : int, optional
+        How often a frame that failed is tried again, after all others.
+    workers : int, optional
+        Frames at once; default one for each CPU.
+    dask : str, optional
+        Address of a Dask scheduler, as ``tcp://host:8786``, to bake there instead.
+    tell : callable, optional
+        Called with each `Event`.
+    notice : callable, optional
+        Called with a line for people where something takes long that later runs save.
+
+    Returns
+    -------
+    Result
+        What became of the frames; one that failed does not stop the others.
+
+    Raises
+    ------
+    SkybakeError
+        If a file could not be written, before anything is computed.
+    """
+    part = plan if only is None else plan.only(only)
+    check_sequence(part, products, view)
+    with frame_pool(
+        plan,
+        part,
+        products=products,
+        view=view,
+        preview_ev=preview_ev,
+        skip_existing=skip_existing,
+        workers=workers,
+        dask=dask,
+        notice=notice,
+    ) as run:
+        return bake_frames(part, run, retries=retries, tell=tell or (lambda _: None))
+
+
+def check_sequence(part: Plan, products: Products | None, view: str) -> None:
+    """Raise what can be said of all files before anything is computed.
+
+    Raises
+    ------
+    SkybakeError
+        If a file cannot be written under its name, or would be written twice.
+    """
+    part.check(view, () if products is None else products.paths)
+    if products is not None:
+        products.check()
+
+
+@contextmanager
+def frame_pool(
+    plan: Plan,
+    part: Plan,
+    *,
+    products: Products | None = None,
+    view: str = "aces2",
+    preview_ev: PreviewEv = "auto",
+    skip_existing: bool = False,
+    workers: int | None = None,
+    dask: str | None = None,
+    notice: Callable[[str], None] | None = None,
+) -> Iterator[Run]:
+    """Yield what bakes frames: threads of this process, or workers of a cluster.
+
+    Parameters
+    ----------
+    plan, part : Plan
+        All of the sequence, as which its frames are shown, and what is baked of it.
+    products, view, preview_ev, skip_existing, workers, dask, notice
+        As of `bake_sequence`.
+
+    Raises
+    ------
+    SkybakeError
+        If the cluster cannot be used.
+    """
+    if dask is None:
+        # First, because an exposure is found with the same tables, and without a word of them.
+        prepare(part, notice)
+    previews = _preview_settings(plan, products, view, preview_ev)
+    pool = (
+        local_pool(part, previews, workers=workers, skip_existing=skip_existing)
+        if dask is None
+        else dask_pool(part, previews, dask, skip_existing=skip_existing)
+    )
+    with pool as run:
+        yield run
+
+
+def _preview_settings(
+    plan: Plan, products: Products | None, view: str, ev: PreviewEv
+) -> PreviewSettings:
+    """How frames are shown; of a part of a sequence as all of it would be."""
+    widths = () if products is None else products.thumbnail_widths
+    has_pictures = bool(widths) or any(frame.preview is not None for frame in plan.frames)
+    follows_map = ev == "auto" and plan.exposure_curve is not None
+    if ev == "auto" and has_pictures and not follows_map:
+        ev = common_ev(plan)
+    return PreviewSettings(
+        view=view,
+        ev=None if isinstance(ev, str) else ev,
+        follows_map=follows_map,
+        thumbnail_widths=widths,
+    )

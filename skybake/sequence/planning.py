@@ -1,0 +1,213 @@
+"""From what changes over time to the frames of a sequence."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from skybake.baking.paths import preview_beside, world_name
+from skybake.ephemeris.moment import Moment, TimeSpan
+from skybake.ephemeris.place import check_planet
+from skybake.errors import ArgumentError, InputError
+from skybake.image.settings import MapSettings
+from skybake.optics.changes import PresetChanges
+from skybake.preset import Planet, planet_name
+from skybake.sequence.exposure_curve import ExposureCurve
+from skybake.sequence.frames import FramePattern, parse_frames
+from skybake.sequence.plan import Frame, Plan
+from skybake.sequence.ramp import Ramp, shares
+
+
+def plan_sequence(
+    preset: str | Path = "earth",
+    *,
+    frames: str | Sequence[int] | None = None,
+    times: TimeSpan | Sequence[Moment] | None = None,
+    sun_elevation: float | Ramp | None = None,
+    sun_azimuth: float | Ramp | None = None,
+    altitude: float | Ramp | None = None,
+    changes: PresetChanges | Mapping[str, Any] | None = None,
+    settings: MapSettings | None = None,
+    exposure_curve: ExposureCurve | str | Path | None = None,
+    output: str | Path | None = None,
+    preview: str | Path | bool = False,
+) -> Plan:
+    """Return all frames of a sequence; nothing is computed yet.
+
+    A `Ramp` goes evenly from the first frame to the last.
+
+    Parameters
+    ----------
+    preset : str or Path, optional
+        Name of a preset, or the path of its file.
+    frames : str or sequence of int, optional
+        Frame numbers, as ``"1-96"``; needed unless `times` say how many there are, which
+        are then counted from 1.
+    times : TimeSpan or sequence of Moment, optional
+        Put the sun where it stands then; moments are one for each frame. A span without
+        a step is spread over the frame numbers, so left out ones leave a gap in time.
+    sun_elevation, sun_azimuth : float or Ramp, optional
+        Where the sun stands, if not by `times`; default as in `settings`. [rad]
+    altitude : float or Ramp, optional
+        Of the observer above the ground, at least 0; default as in `settings`. [km]
+    changes : PresetChanges or mapping, optional
+        Changes of the preset, or values by its dotted keys; values may be a `Ramp`.
+    settings : MapSettings, optional
+        All else of the maps.
+    exposure_curve : ExposureCurve, str or Path, optional
+        What 1.0 stands for in each frame, or its CSV file.
+    output : str or Path, optional
+        Pattern of the maps' files, as ``sky.####.exr``; default after the world.
+    preview : str, Path or bool, optional
+        Pattern of the pictures' files, ``.png``; True for pictures beside the maps.
+
+    Raises
+    ------
+    ArgumentError
+        If arguments contradict each other or leave the frames open.
+    SkybakeError
+        If a value, the preset, or a file cannot be used.
+    """
+    settings = settings or MapSettings()
+    if times is not None:
+        for name, value in (("sun_elevation", sun_elevation), ("sun_azimuth", sun_azimuth)):
+            if value is not None:
+                raise ArgumentError(f"{{{name}}}: needs no {{times}} beside it")
+    numbers, moments = _numbers_and_moments(frames, times)
+    if moments:
+        check_planet(moments[0].place, planet_name(preset))
+    along = shares(numbers)
+    planets = _planets(preset, changes, along)
+    output = Path(output or _default_output(planets))
+    maps = _pattern("output", output, numbers)
+    pictures = None if isinstance(preview, bool) else _pattern("preview", preview, numbers)
+    if isinstance(exposure_curve, str | Path):
+        exposure_curve = ExposureCurve.read(Path(exposure_curve))
+    planned = []
+    for i, (number, share) in enumerate(zip(numbers, along, strict=True)):
+        moment = moments[i] if moments else None
+        path = maps.path(number)
+        picture = preview_beside(path) if preview is True else None
+        at_share = _settings_at(
+            settings,
+            _at(sun_elevation, share) if moment is None else moment.sun_elevation,
+            _at(sun_azimuth, share) if moment is None else moment.sun_azimuth,
+            _at(altitude, share),
+            None if exposure_curve is None else exposure_curve.at(number),
+        )
+        planned.append(
+            Frame(
+                number=number,
+                world=min(i, len(planets) - 1),
+                settings=at_share,
+                output=path,
+                preview=picture if pictures is None else pictures.path(number),
+                label=None if moment is None else moment.label,
+                attributes={} if moment is None else moment.attributes,
+            )
+        )
+    return Plan(planets, tuple(planned), output, exposure_curve)
+
+
+def _numbers_and_moments(
+    frames: str | Sequence[int] | None, times: TimeSpan | Sequence[Moment] | None
+) -> tuple[tuple[int, ...], Sequence[Moment]]:
+    """Return the frames, ascending, and the moment of each, or none if there are no times."""
+    numbers = None if frames is None else _numbers(frames)
+    if times is None:
+        if numbers is None:
+            raise ArgumentError("{frames}: is needed, as 1-96")
+        return numbers, ()
+    if isinstance(times, TimeSpan) and times.every is None:
+        if numbers is None:
+            raise ArgumentError("{frames}: is needed, or {every}")
+        first, last = numbers[0], numbers[-1]
+        moments = times.moments(last - first + 1)
+        return numbers, [moments[number - first] for number in numbers]
+    moments = times.moments() if isinstance(times, TimeSpan) else list(times)
+    if not moments:
+        raise ArgumentError("{times}: must hold at least one moment")
+    if numbers is None:
+        return tuple(range(1, len(moments) + 1)), moments
+    if len(numbers) != len(moments):
+        raise ArgumentError(
+            "{frames}: must be as many as "
+            + ("{every} makes" if isinstance(times, TimeSpan) else "{times} are")
+            + ", which is {count} (got {found})",
+            count=len(moments),
+            found=len(numbers),
+        )
+    return numbers, moments
+
+
+def _numbers(frames: str | Sequence[int]) -> tuple[int, ...]:
+    numbers = parse_frames(frames) if isinstance(frames, str) else tuple(sorted(set(frames)))
+    if not numbers:
+        raise ArgumentError("{frames}: must hold at least one frame")
+    return numbers
+
+
+def _planets(
+    preset: str | Path, changes: PresetChanges | Mapping[str, Any] | None, along: Sequence[float]
+) -> tuple[Planet, ...]:
+    """Worlds of the frames: one, or one for each if something of it changes."""
+    if not isinstance(changes, PresetChanges):
+        changes = PresetChanges(tuple((changes or {}).items()))
+    if not any(isinstance(value, Ramp) for _, value in changes.values):
+        return (changes.load(preset),)
+    return tuple(
+        replace(
+            changes,
+            values=tuple(
+                (key, _plain(value.at(share)) if isinstance(value, Ramp) else value)
+                for key, value in changes.values
+            ),
+        ).load(preset)
+        for share in along
+    )
+
+
+def _plain(number: float) -> float:
+    """Return a number as one would type it, since the text of a recipe tells 2 from 2.0."""
+    return int(number) if number.is_integer() else number
+
+
+def _default_output(planets: Sequence[Planet]) -> str:
+    """Name of the world, with what was set of it, unless that changes from frame to frame."""
+    name = world_name(planets[0]) if len(planets) == 1 else planets[0].name
+    return f"{name}.####.exr"
+
+
+def _pattern(argument: str, text: str | Path, numbers: Sequence[int]) -> FramePattern:
+    try:
+        pattern = FramePattern.parse(str(text))
+        pattern.check(numbers)
+    except InputError as error:
+        raise ArgumentError(f"{{{argument}}}: {{cause}}", cause=error) from error
+    return pattern
+
+
+def _at(value: float | Ramp | None, share: float) -> float | None:
+    return value.at(share) if isinstance(value, Ramp) else value
+
+
+def _settings_at(
+    settings: MapSettings,
+    sun_elevation: float | None,
+    sun_azimuth: float | None,
+    altitude: float | None,
+    ev: float | None,
+) -> MapSettings:
+    """Return settings with what a frame has of its own; None leaves a value as it is."""
+    view, lighting, encoding = settings.view, settings.lighting, settings.encoding
+    if altitude is not None:
+        view = replace(view, altitude=altitude)
+    if sun_elevation is not None:
+        lighting = replace(lighting, sun_elevation=sun_elevation)
+    if sun_azimuth is not None:
+        lighting = replace(lighting, sun_azimuth=sun_azimuth)
+    if ev is not None:
+        encoding = replace(encoding, ev=ev)
+    return MapSettings(view, lighting, encoding)
