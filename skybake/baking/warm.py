@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from skybake import reference
-from skybake.baking.companion import beside
+from skybake.baking.late_kernels import compiled_in_background
 from skybake.baking.settings import CUBE_LAYOUTS, MapSettings
 from skybake.baking.write import bake
 from skybake.optics.medium import build_medium
@@ -26,7 +26,7 @@ ORBIT = 400.0
 def compile_all() -> None:
     """Bake each kind of map, in small, and trace a few paths."""
     planet = load_preset("earth")
-    with beside(), tempfile.TemporaryDirectory() as folder:
+    with compiled_in_background(), tempfile.TemporaryDirectory() as folder:
         for number, settings in enumerate(_kinds()):
             bake(planet, Path(folder) / f"{number}.exr", settings)
     medium = build_medium(planet, WAVELENGTHS)

@@ -79,14 +79,14 @@ def render(**options: Any) -> None:
         options |= {"sun_elevation": when.sun_elevation, "sun_azimuth": when.sun_azimuth}
     settings = request.map_settings(options)
 
-    from skybake.baking import bake, companion, default_path
+    from skybake.baking import bake, default_path, late_kernels
 
     planet = world.load_world(options["preset"], options)
     output = options["output"] or default_path(planet, settings)
     quiet = options["quiet"]
     if not quiet:
         report.announce(output)
-    with companion.beside(), report.progress_bar(quiet=quiet) as progress:
+    with late_kernels.compiled_in_background(), report.progress_bar(quiet=quiet) as progress:
         baked = bake(
             planet,
             output,

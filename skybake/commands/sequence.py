@@ -266,14 +266,14 @@ def _write_products(products: Products, result: Result) -> list[Path]:
 
 
 def _bake(plan: Plan, part: Plan, view: str, options: dict[str, Any]) -> Result:
-    from skybake.baking import companion
+    from skybake.baking import late_kernels
     from skybake.sequence.run import bake_sequence
 
     quiet = options["quiet"]
     if not quiet:
         report.announce_kernels()
     with (
-        companion.beside(),
+        late_kernels.compiled_in_background(),
         _pool(plan, part, view, options) as run,
         progress.progress(options["style"], len(part.frames), quiet=quiet) as tell,
     ):

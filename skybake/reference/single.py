@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 
-from skybake.jit.shared_kernel import shared_kernel
-from skybake.reference.directions import advance, dot, phase_and_lobe, scattering_at
+from skybake.jit.kernel import kernel
+from skybake.reference.air import Air
+from skybake.reference.directions import Direction, advance, dot, phase_and_lobe, scattering_at
 from skybake.reference.rays import (
     altitude_on_ray,
     column,
@@ -24,18 +25,22 @@ LONGEST_PIECE = 1e-3
 _GAUSS = 0.5 - 0.5 / math.sqrt(3.0)
 
 
-@shared_kernel
-def single_radiance(air, sun, h, direction):
+def single_radiance(air: Air, sun: Direction, h: float, direction: Direction) -> float:
     """Radiance of order 1 from altitude `h` under the vertical (0, 0, 1).
 
     Two Gauss points, in transmittance, for every piece of the ray: pieces end
     where the ray crosses a shell or the planet's shadow.
     """
-    ray = trace(air, h, direction[2], new_cuts(air))
+    room = np.empty(len(air.scattering))
+    return float(_single_radiance(air, sun, h, direction, new_cuts(air), room))
+
+
+@kernel
+def _single_radiance(air, sun, h, direction, room, each):
+    ray = trace(air, h, direction[2], room)
     if ray.segments == 0:
         return 0.0
     shadow = _shadow_crossings(air, ray, sun, h, direction)
-    each = np.empty(len(air.scattering))
     longest = LONGEST_PIECE * air.r_bottom
     radiance = 0.0
     depth = 0.0
@@ -74,7 +79,7 @@ def single_radiance(air, sun, h, direction):
     return radiance
 
 
-@shared_kernel
+@kernel
 def _source(air, ray, sun, h, direction, k, s, each):
     """Light that extinction at `s` turns toward the observer, per unit of extinction."""
     h_there = max(0.0, altitude_on_ray(air.r_bottom, ray.h_tangent, s))
@@ -87,7 +92,7 @@ def _source(air, ray, sun, h, direction, k, s, each):
     return albedo * phase * transmittance_to_space(air, h_there, dot(up, sun))
 
 
-@shared_kernel
+@kernel
 def _shadow_crossings(air, ray, sun, h, direction):
     """Where the ray meets the cylinder that the planet's shadow fills, as distances `s`."""
     r = air.r_bottom + h

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import threading
 from collections import OrderedDict
 from concurrent.futures import Future
@@ -22,10 +23,11 @@ from skybake.scattering.solver import solve_field
 from skybake.scattering.store import (
     arrays_from_content,
     content_from_arrays,
+    has_tables,
     read_tables,
-    stored_tables,
     write_tables,
 )
+from skybake.scattering.table_shapes import are_tables_of
 from skybake.scattering.transmittance import build_columns
 from skybake.transport.shells import altitude_shells
 
@@ -87,10 +89,23 @@ _recent: OrderedDict[str, Future[Atmosphere]] = OrderedDict()
 _lock = threading.Lock()
 
 
+def _leave_to_parent() -> None:
+    """Let a forked process build itself what threads of its parent had begun to build."""
+    global _lock  # noqa: PLW0603 - it may be held by a thread that is not there
+    _lock = threading.Lock()
+    for key in [key for key, tables in _recent.items() if not tables.done()]:
+        del _recent[key]
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_leave_to_parent)
+
+
 def load_atmosphere(medium: Medium, method: str, workers: Workers = ALL_CPUS) -> Atmosphere:
     """Return the tables of a medium from memory or disk, or build and keep them.
 
-    A file that is missing or not, bit by bit, what was once written is made anew;
+    A file that is missing, or is not bit by bit what was once written under its name, or
+    whose arrays have other shapes than the medium asks for, is made anew;
     where none can be written the tables are built by every process.
     """
     key = atmosphere_key(medium, method)
@@ -112,7 +127,7 @@ def load_atmosphere(medium: Medium, method: str, workers: Workers = ALL_CPUS) ->
 
 def _read_or_build(medium: Medium, method: str, key: str, workers: Workers) -> Atmosphere:
     arrays = read_tables(key)
-    if arrays is not None:
+    if arrays is not None and are_tables_of(medium, arrays):
         return _from_arrays(medium, arrays)
     atmosphere = build_atmosphere(medium, method, workers)
     write_tables(key, _to_arrays(atmosphere))
@@ -121,7 +136,8 @@ def _read_or_build(medium: Medium, method: str, key: str, workers: Workers) -> A
 
 def atmosphere_content(medium: Medium, method: str) -> bytes:
     """Return the tables of a medium as a file holds them, for another machine."""
-    return content_from_arrays(_to_arrays(load_atmosphere(medium, method)))
+    arrays = _to_arrays(load_atmosphere(medium, method))
+    return content_from_arrays(atmosphere_key(medium, method), arrays)
 
 
 def adopt_atmosphere(medium: Medium, method: str, content: bytes) -> None:
@@ -130,8 +146,8 @@ def adopt_atmosphere(medium: Medium, method: str, content: bytes) -> None:
     Content that is not as it was made is left alone: the tables are then built here.
     """
     key = atmosphere_key(medium, method)
-    arrays = None if key in _recent else arrays_from_content(content)
-    if arrays is None:
+    arrays = None if key in _recent else arrays_from_content(key, content)
+    if arrays is None or not are_tables_of(medium, arrays):
         return
     adopted: Future[Atmosphere] = Future()
     adopted.set_result(_from_arrays(medium, arrays))
@@ -146,7 +162,7 @@ def forget_atmospheres() -> None:
 
 def is_stored(medium: Medium, method: str) -> bool:
     """Whether `load_atmosphere` would find a file."""
-    return stored_tables(atmosphere_key(medium, method)) is not None
+    return has_tables(atmosphere_key(medium, method))
 
 
 def atmosphere_key(medium: Medium, method: str) -> str:
