@@ -19,6 +19,9 @@ from skybake.jit.machine_code import Entry, MachineCode
 from skybake.jit.private_folder import PrivateFolder
 
 
+_CONSTANT = (int, float, complex, str, tuple)
+
+
 class Kernel:
     """A function that is compiled for the types of its arguments when they are first met.
 
@@ -87,9 +90,10 @@ class Kernel:
         return compile_kernel(self._dispatcher, symbol, values, layout)
 
     def _digest(self, kinds: tuple[Kind, ...]) -> str:
-        function = self.py_func
-        version = f"{function.__module__} {kinds!r} {_processor()!r}".encode()
-        return hashlib.sha256(version + function.__code__.co_code).hexdigest()[:16]
+        function, code = self.py_func, self.py_func.__code__
+        constants = [each for each in code.co_consts if isinstance(each, _CONSTANT)]
+        parts = function.__module__, kinds, _processor(), code.co_names, constants
+        return hashlib.sha256(repr(parts).encode() + code.co_code).hexdigest()[:16]
 
 
 def kernel(function: Callable[..., Any]) -> Kernel:
