@@ -18,7 +18,6 @@ from skybake.jit.digest import add_digest, remove_digest
 from skybake.jit.machine_code import Entry, MachineCode
 from skybake.jit.private_folder import PrivateFolder
 
-
 _CONSTANT = (int, float, complex, str, tuple)
 
 

@@ -1,9 +1,11 @@
 """What is kept between runs is found again, and made anew where it is damaged."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
+import tempfile
 import time
 from importlib.metadata import version
 from pathlib import Path
@@ -243,6 +245,90 @@ def test_a_damaged_kernel_is_compiled_anew(tmp_path, damage):
     assert result.stderr == ""
     assert path.read_bytes() != damage(whole)
     assert run(tmp_path).stdout.split()[-1] == "1"
+
+
+TWO_KERNELS = """
+import sys
+from skybake.jit.kernel import kernel
+
+@kernel
+def twice(x):
+    return 2.0 * x
+
+@kernel
+def last(values):
+    return values[values.size - 1]
+
+import numpy as np
+print(twice(4.0), twice(4), last(np.arange(3.0)), int("numba" not in sys.modules))
+"""
+
+
+def test_a_kernel_under_the_name_of_another_is_compiled_anew(tmp_path):
+    """Of another function, or of the same one for other types."""
+    assert run(tmp_path, script=TWO_KERNELS).stdout.split() == ["8.0", "8.0", "2.0", "0"]
+    kernels = sorted(tmp_path.rglob("*.kernel"))
+    assert len(kernels) == 3
+    contents = [path.read_bytes() for path in kernels]
+    for path, content in zip(kernels, contents[1:] + contents[:1], strict=True):
+        path.write_bytes(content)
+    assert run(tmp_path, script=TWO_KERNELS).stdout.split() == ["8.0", "8.0", "2.0", "0"]
+    assert run(tmp_path, script=TWO_KERNELS).stdout.split() == ["8.0", "8.0", "2.0", "1"]
+
+
+def test_a_kernel_for_another_processor_is_compiled_anew(tmp_path):
+    run(tmp_path, script=TWO_KERNELS, NUMBA_CPU_NAME="generic", NUMBA_CPU_FEATURES="")
+    others = sorted(tmp_path.rglob("*.kernel"))
+    run(tmp_path, script=TWO_KERNELS)
+    ours = sorted(set(tmp_path.rglob("*.kernel")) - set(others))
+    assert len(ours) == len(others) == 3
+    for mine, other in zip(ours, others, strict=True):
+        mine.write_bytes(other.read_bytes())
+    assert run(tmp_path, script=TWO_KERNELS).stdout.split()[-1] == "0"
+
+
+READ_AS_ANOTHER_USER = """
+import os
+from skybake.jit import cache
+from skybake.jit.private_folder import open_private_folder
+path = cache.cache_folder().path
+cache.cache_folder().write("a.kernel", b"content")
+before = path.parent.stat().st_mode & 0o777
+cache.share_cache()
+child = os.fork()
+if child == 0:
+    os.setgroups([])
+    os.setgid(65534)
+    os.setuid(65534)
+    folder = open_private_folder(path)
+    readable = folder.read("a.kernel") == b"content"
+    try:
+        folder.write("b.kernel", b"content")
+    except OSError:
+        os._exit(7 if readable else 1)
+print(oct(before), os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+"""
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only root can become another user")
+def test_what_root_shares_is_read_but_not_written_by_others():
+    with tempfile.TemporaryDirectory() as folder:
+        Path(folder).chmod(0o755)
+        result = run(Path(folder) / "cache", script=READ_AS_ANOTHER_USER)
+    assert (result.stdout, result.stderr) == ("0o700 7\n", "")
+
+
+def test_nothing_that_a_process_leaves_can_be_read_by_others(tmp_path):
+    run(tmp_path / "cache", script="import os; os.umask(0)" + LARGER + SCRIPT)
+    for path in [tmp_path / "cache", *(tmp_path / "cache").rglob("*")]:
+        assert path.stat().st_mode & 0o777 == (0o700 if path.is_dir() else 0o600), path
+
+
+def test_no_module_of_ours_unpickles():
+    package = Path(skybake.__file__).parent
+    banned = re.compile(r"^\s*(import|from) (pickle|marshal|shelve|dill|cloudpickle)\b", re.M)
+    found = [path for path in package.rglob("*.py") if banned.search(path.read_text())]
+    assert found == []
 
 
 def test_a_folder_that_others_may_write_to_is_not_used(tmp_path):

@@ -182,6 +182,19 @@ def test_a_file_that_is_not_what_was_written_is_made_anew(folder, damage):
     assert path.read_bytes() == whole
 
 
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_tables_from_another_machine_that_do_not_fit_are_made_anew(folder, damage, monkeypatch):
+    built = load(MEDIUM)
+    (path,) = folder.iterdir()
+    whole = path.read_bytes()
+    path.unlink()
+    for content, builds in ((whole, 0), (damage(whole), 1)):
+        forget_atmospheres()
+        atmosphere.adopt_atmosphere(MEDIUM, "hillaire", content)
+        assert_same(atmosphere.load_atmosphere(MEDIUM, "hillaire"), built)
+        assert len(list(folder.iterdir())) == builds
+
+
 def test_a_file_in_place_of_the_folder_only_costs_the_reuse(folder):
     folder.write_text("not a folder")
     first, second = (load(MEDIUM) for _ in range(2))
