@@ -67,7 +67,7 @@ def run(code, folder):
         capture_output=True,
         text=True,
         check=False,
-        timeout=120,
+        timeout=240,
     )
 
 

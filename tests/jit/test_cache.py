@@ -45,7 +45,7 @@ def run(cache=None, *, script=SCRIPT, wrapper=(), **environment):
         capture_output=True,
         text=True,
         check=True,
-        timeout=120,
+        timeout=240,
     )
 
 
