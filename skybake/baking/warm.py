@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from skybake.baking.companion import beside
+from skybake.baking.late_kernels import compiled_in_background
 from skybake.baking.write import bake
 from skybake.image.settings import Lighting, MapSettings, View
 from skybake.optics.medium import build_medium
@@ -28,7 +28,7 @@ ORBIT = 400.0
 def compile_all() -> None:
     """Bake each kind of map, in small, and trace a few paths."""
     planet = load_preset("earth")
-    with beside(), tempfile.TemporaryDirectory() as folder:
+    with compiled_in_background(), tempfile.TemporaryDirectory() as folder:
         for number, settings in enumerate(_kinds()):
             bake(planet, Path(folder) / f"{number}.exr", settings)
     medium = build_medium(planet, WAVELENGTHS)

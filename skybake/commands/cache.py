@@ -77,20 +77,28 @@ def clear() -> None:
     show_default=True,
     help="World whose atmosphere is solved ahead; may be repeated.",
 )
+@click.option(
+    "--for-all-users",
+    is_flag=True,
+    help="Let every user read what lies there, as in an image of a container.",
+)
 @click.option("-q", "--quiet", is_flag=True, help="Print nothing but faults.")
-def warm(presets: tuple[str, ...], quiet: bool) -> None:
+def warm(presets: tuple[str, ...], for_all_users: bool, quiet: bool) -> None:
     """Compile every kernel, so that no later run has to, as in an image of a container.
 
     \b
     Examples:
       skybake cache warm
-      SKYBAKE_CACHE_DIR=/opt/skybake skybake cache warm --preset earth --preset mars
+      SKYBAKE_CACHE_DIR=/opt/skybake skybake cache warm --for-all-users --preset earth --preset mars
+
+    What lies in the cache is its owner's alone. With --for-all-users others can read it, and use it
+    where it is root's.
     """
     check_memory()
     started = time.perf_counter()
     say = _silent if quiet else notice
 
-    from skybake.jit.cache import check_cache
+    from skybake.jit.cache import check_cache, share_cache
 
     check_cache()
 
@@ -103,6 +111,8 @@ def warm(presets: tuple[str, ...], quiet: bool) -> None:
     say("compiling kernels")
     solve(presets, say)
     compile_all()
+    if for_all_users:
+        share_cache()
     if not quiet:
         click.echo(f"warm; {time.perf_counter() - started:.1f} s")
 

@@ -66,7 +66,7 @@ def render(**options: Any) -> None:
         altitude=options["altitude"],
     )
 
-    from skybake.baking import bake, companion, default_path
+    from skybake.baking import bake, default_path, late_kernels
     from skybake.baking.paths import preview_beside
 
     planet = world_from_options(context)
@@ -75,7 +75,7 @@ def render(**options: Any) -> None:
     quiet = options["quiet"]
     if not quiet:
         announce(output)
-    with companion.beside(), map_progress(quiet=quiet) as progress:
+    with late_kernels.compiled_in_background(), map_progress(quiet=quiet) as progress:
         baked = bake(
             planet,
             output,

@@ -217,7 +217,7 @@ def _plan_from_options(context: click.Context) -> Plan:
 
 
 def _bake(plan: Plan, part: Plan, products: Products, options: Mapping[str, Any]) -> Result:
-    from skybake.baking import companion
+    from skybake.baking import late_kernels
     from skybake.sequence.bake import check_sequence, frame_pool
     from skybake.sequence.run import bake_frames
 
@@ -226,7 +226,7 @@ def _bake(plan: Plan, part: Plan, products: Products, options: Mapping[str, Any]
     if not quiet:
         announce_kernels()
     with (
-        companion.beside(),
+        late_kernels.compiled_in_background(),
         frame_pool(
             plan,
             part,

@@ -12,10 +12,14 @@ import numpy.typing as npt
 import OpenImageIO
 
 from skybake.errors import OutputError
+from skybake.formats.fork import end_threads_before_forks
 from skybake.formats.partial import write_error
 from skybake.jit.workers import ALL_CPUS, Workers
 
 Rows = npt.NDArray[np.float32] | npt.NDArray[np.float16]
+
+
+end_threads_before_forks()
 
 
 class ScanlineWriter:

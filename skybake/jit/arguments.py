@@ -9,6 +9,12 @@ import numpy as np
 _C_ORDER, _FORTRAN_ORDER, _ALIGNED, _WRITEABLE = 1, 2, 0x100, 0x400
 _FLAGS = _ALIGNED | _WRITEABLE
 
+ARRAY_FIELDS = ("meminfo", "parent", "nitems", "itemsize", "data", "shape", "strides")
+"""Parts of an array in the order of its words, by the names that numba gives them.
+
+The first two own the array's memory and are 0, since kernels keep no array.
+"""
+
 Kind = int | str
 
 
@@ -97,7 +103,7 @@ def _append(value: Any, kinds: list[Kind], words: list[int | float]) -> None:
 
 
 def _append_array(array: np.ndarray, kinds: list[Kind], words: list[int | float]) -> None:
-    """Append an array as numba lays it out: owners, size, item size, address, shape, strides."""
+    """Append the `ARRAY_FIELDS` of an array."""
     if not array.dtype.isnative:
         raise TypeError(f"kernel: array must be in the machine's byte order, got {array.dtype}")
     flags = array.flags.num

@@ -17,6 +17,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from skybake.errors import OutputError
+from skybake.jit.private_folder import NotPrivateError, PrivateFolder, open_private_folder
 from skybake.version import __version__
 
 UNUSED_AFTER = 30 * 86400.0
@@ -26,40 +27,56 @@ KERNEL_SUFFIX = ".kernel"
 TABLES_FOLDER = "atmospheres"
 TABLES_SUFFIX = ".tables"
 
-KERNEL_SOURCES = ("jit", "optics", "transport", "scattering", "sky", "formats/half.py")
+KERNEL_SOURCES = (
+    "jit", "optics", "transport", "scattering", "reference", "sky", "formats/half.py",
+)  # fmt: skip
+"""Packages and modules that hold kernels, or what kernels are made from."""
+
 _PREFIX = "kernels-"
 _DAY = 86400.0
-_OTHERS_MAY_WRITE = 0o002
+_LONGEST_NAME = 200
+
+
+def cache_folder() -> PrivateFolder | None:
+    """Open the folder of this version's kernels and tables; None where there can be none.
+
+    It is named by a digest of the kernels' sources and of what compiles them.
+    SKYBAKE_CACHE_DIR and NUMBA_CACHE_DIR take precedence over the user's cache folder.
+    A folder that others can write to is not used, since a compiled kernel is a program;
+    one that only root can write to, as in an image of a container, is.
+    """
+    folder = _open_folder()
+    if folder is not None and not folder.is_open():
+        # Another process has removed it meanwhile.
+        _open_folder.cache_clear()
+        folder = _open_folder()
+    return folder
 
 
 @functools.cache
-def cache_directory() -> Path | None:
-    """Folder of this version's kernels and tables, or None where there can be none.
-
-    It is named by a digest of the kernels' sources and of what compiles them.
-    SKYBAKE_CACHE_DIR and NUMBA_CACHE_DIR take precedence over the user's cache
-    folder. A folder that others can write to is not used, since a compiled kernel is
-    a program; one that only root can write to, as in an image of a container, is.
-    """
+def _open_folder() -> PrivateFolder | None:
     directory = version_directory()
     if directory is None:
         warn_of_no_cache("SKYBAKE_CACHE_DIR: kernel cache must be given without a home folder")
         return None
-    is_new = not directory.is_dir()
     try:
-        directory.mkdir(0o755, parents=True, exist_ok=True)
-    except OSError:
-        warn_of_no_cache(f"{directory}: kernel cache must be writable")
+        is_new = not _exists(directory)
+        folder = open_private_folder(directory)
+    except NotPrivateError as error:
+        warn_of_no_cache(
+            f"{shortened(directory)}: kernel cache must be writable for its owner only, got {error}"
+        )
         return None
-    if not _is_private(directory):
-        warn_of_no_cache(f"{directory}: kernel cache must be writable for its owner only")
+    except OSError as error:
+        reason = error.strerror or error
+        warn_of_no_cache(f"{shortened(directory)}: kernel cache must be writable, got {reason}")
         return None
     if is_new:
         _remove_unused(directory.parent)
     with suppress(OSError):
         if time.time() - directory.stat().st_mtime > _DAY:
-            os.utime(directory)
-    return directory
+            folder.mark_used()
+    return folder
 
 
 def check_cache() -> None:
@@ -68,16 +85,26 @@ def check_cache() -> None:
     Raises
     ------
     OutputError
-        If it cannot be written to, or `cache_directory` does not use it.
+        If it cannot be written to, or `cache_folder` does not use it.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
-        directory = cache_directory()
-    if directory is None or not os.access(directory, os.W_OK | os.X_OK):
+        folder = cache_folder()
+    if folder is None or not os.access(folder.path, os.W_OK | os.X_OK):
+        root = folder.path if folder else cache_root()
         raise OutputError(
-            f"{directory or cache_root()}: kernel cache must be a folder that is writable for its "
+            f"{shortened(root)}: kernel cache must be a folder that is writable for its "
             "owner only, got one that is not; SKYBAKE_CACHE_DIR names another"
         )
+
+
+def share_cache() -> None:
+    """Let all users read this version's kernels and tables, as in an image of a container."""
+    folder = cache_folder()
+    if folder is not None:
+        folder.path.parent.chmod(0o755)
+        folder.share()
+        folder.within(TABLES_FOLDER).share()
 
 
 def cache_root() -> Path | None:
@@ -94,8 +121,8 @@ def version_directory() -> Path | None:
 
 def is_warm() -> bool:
     """Whether compiled kernels of this version lie on disk."""
-    directory = cache_directory()
-    return directory is not None and any(directory.glob(f"*{KERNEL_SUFFIX}"))
+    folder = cache_folder()
+    return folder is not None and any(name.endswith(KERNEL_SUFFIX) for name in folder.names())
 
 
 @dataclass(frozen=True)
@@ -162,8 +189,30 @@ def _sizes(folder: Path, suffix: str) -> list[int]:
 
 
 def _folders(parent: Path | None) -> Iterator[Path]:
-    if parent is not None and parent.is_dir():
-        yield from sorted(path for path in parent.glob(f"{_PREFIX}*") if path.is_dir())
+    if parent is None:
+        return
+    try:
+        folders = sorted(path for path in parent.iterdir() if path.name.startswith(_PREFIX))
+    except (FileNotFoundError, NotADirectoryError):
+        return
+    except OSError as error:
+        reason = error.strerror or error
+        raise OutputError(f"{shortened(parent)}: cache must be readable, got {reason}") from error
+    yield from (folder for folder in folders if folder.is_dir())
+
+
+def shortened(path: Path | None) -> str:
+    """Return a path for a message of one line, which a name of thousands of letters is not."""
+    text = str(path)
+    return text if len(text) <= _LONGEST_NAME else f"{text[:_LONGEST_NAME]}..."
+
+
+def _exists(directory: Path) -> bool:
+    try:
+        directory.stat()
+    except FileNotFoundError:
+        return False
+    return True
 
 
 def _remove_unused(parent: Path) -> None:
@@ -172,13 +221,6 @@ def _remove_unused(parent: Path) -> None:
         with suppress(OSError):
             if time.time() - folder.stat().st_mtime > UNUSED_AFTER:
                 shutil.rmtree(folder, ignore_errors=True)
-
-
-def _is_private(directory: Path) -> bool:
-    if not hasattr(os, "getuid"):
-        return True
-    state = directory.stat()
-    return state.st_uid in {0, os.getuid()} and not state.st_mode & _OTHERS_MAY_WRITE
 
 
 @functools.cache

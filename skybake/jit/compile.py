@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+import llvmlite
 import llvmlite.binding as llvm
 import numba
 from llvmlite import ir
@@ -15,6 +16,8 @@ from numba.core import types
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import cpu_target
 
+from skybake.errors import SkybakeError
+from skybake.jit.arguments import ARRAY_FIELDS
 from skybake.jit.machine_code import MachineCode
 
 # Without nnan and ninf: kernels may rely on the meaning of inf and nan.
@@ -57,8 +60,17 @@ def compile_kernel(
     -------
     MachineCode
         The kernel and all that it calls.
+
+    Raises
+    ------
+    SkybakeError
+        If this version of numba passes arguments in another way.
+    TypeError
+        If the kernel needs numba to run.
     """
     signature = tuple(numba.typeof(argument) for argument in arguments)
+    for kind in signature:
+        _check_fields(kind)
     with global_compiler_lock, _without_emission(), _without_collection():
         dispatcher.compile(signature)
     compiled = dispatcher.overloads[signature]
@@ -76,6 +88,34 @@ def compile_kernel(
     return MachineCode(
         symbol, _RESULTS[compiled.signature.return_type], machine.emit_object(module)
     )
+
+
+def layout_error(expected: str, got: str) -> SkybakeError:
+    """Error for arguments that numba does not pass as `skybake.jit.arguments` lays them out."""
+    versions = f"numba {numba.__version__} with llvmlite {llvmlite.__version__}"
+    return SkybakeError(f"{versions}: must pass arguments {expected}, got {got}")
+
+
+def parts_of(kind: Any) -> tuple[Any, ...]:
+    """Types of what a tuple consists of."""
+    return tuple(kind)
+
+
+def _check_fields(kind: Any) -> None:
+    """Refuse arrays and tuples whose parts numba has in another order than arguments have."""
+    if isinstance(kind, types.BaseTuple):
+        for each in parts_of(kind):
+            _check_fields(each)
+        expected: tuple[str, ...] = tuple(f"f{i}" for i in range(len(parts_of(kind))))
+    elif isinstance(kind, types.Array):
+        expected = ARRAY_FIELDS
+    else:
+        return
+    # Tuples of one kind have no fields.
+    model = cpu_target.target_context.data_model_manager[kind]
+    fields = tuple(getattr(model, "_fields", expected))
+    if fields != expected:
+        raise layout_error(f"as {', '.join(expected)}", ", ".join(fields))
 
 
 @contextmanager
@@ -136,7 +176,7 @@ def _entry(compiled: Any, symbol: str, layout: str) -> ir.Module:
     packer = context.get_arg_packer(descriptor.argtypes)
     expected = ("d" if isinstance(kind, ir.DoubleType) else "q" for kind in packer.argument_types)
     if "".join(expected) != layout:
-        raise TypeError(f"{symbol}: numba must lay out its arguments as we do, got another way")
+        raise layout_error(f"of {symbol} as {layout}", "".join(expected))
     flat = [
         builder.load(builder.bitcast(builder.gep(words, [_WORD(i)]), kind.as_pointer()))
         for i, kind in enumerate(packer.argument_types)

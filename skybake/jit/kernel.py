@@ -7,16 +7,18 @@ import hashlib
 import os
 import threading
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import llvmlite.binding as llvm
 
-from skybake.jit import beside
+from skybake.jit import background_compiler
 from skybake.jit.arguments import Flat, Kind, flatten_all, word_letters
-from skybake.jit.cache import KERNEL_SUFFIX, cache_directory, warn_of_loss
+from skybake.jit.cache import KERNEL_SUFFIX, cache_folder, warn_of_loss
+from skybake.jit.digest import add_digest, remove_digest
 from skybake.jit.machine_code import Entry, MachineCode
-from skybake.jit.sealed import read_sealed, write_sealed
+from skybake.jit.private_folder import PrivateFolder
+
+_CONSTANT = (int, float, complex, str, tuple)
 
 
 class Kernel:
@@ -24,7 +26,7 @@ class Kernel:
 
     Compiled code is kept on disk; only where there is none is numba imported. Other
     kernels may call it too. It must not make arrays, raise exceptions or return more
-    than a number, and is serial; `skybake.jit.threads` runs several at once.
+    than a number, and is serial; `skybake.jit.workers` runs several at once.
 
     Parameters
     ----------
@@ -63,24 +65,22 @@ class Kernel:
         return self._dispatcher._numba_type_
 
     def _link(self, kinds: tuple[Kind, ...], arguments: tuple[Any, ...]) -> Entry:
-        name = self.py_func.__name__
+        name, layout = self.py_func.__name__, word_letters(kinds)
         symbol = f"{name.strip('_')}-{self._digest(kinds)}"
-        directory = cache_directory()
-        machine_code = (
-            None if directory is None else self._load(directory / f"{symbol}{KERNEL_SUFFIX}")
-        )
+        purpose = f"kernel {symbol} of {kinds!r} as {layout} for {_processor()!r}"
+        folder = cache_folder()
+        machine_code = None
+        if folder is not None:
+            machine_code = _load(folder, symbol, purpose)
+            if machine_code is None and background_compiler.wait_for(name, folder, _file(symbol)):
+                machine_code = _load(folder, symbol, purpose)
         if machine_code is None:
-            machine_code = self._compile(symbol, arguments, word_letters(kinds))
-            if directory is not None:
-                _keep(directory / f"{symbol}{KERNEL_SUFFIX}", machine_code)
-        entry = self._entries[kinds] = Entry(machine_code, word_letters(kinds))
+            _check_compiler(folder)
+            machine_code = self._compile(symbol, arguments, layout)
+            if folder is not None:
+                _keep(folder, machine_code, purpose)
+        entry = self._entries[kinds] = Entry(machine_code, layout)
         return entry
-
-    def _load(self, path: Path) -> MachineCode | None:
-        content = read_sealed(path)
-        if content is None and beside.wait_for(self.py_func.__name__, path):
-            content = read_sealed(path)
-        return None if content is None else MachineCode.from_bytes(content)
 
     def _compile(self, symbol: str, arguments: tuple[Any, ...], layout: str) -> MachineCode:
         from skybake.jit.compile import compile_kernel
@@ -89,9 +89,10 @@ class Kernel:
         return compile_kernel(self._dispatcher, symbol, values, layout)
 
     def _digest(self, kinds: tuple[Kind, ...]) -> str:
-        function = self.py_func
-        version = f"{function.__module__} {kinds!r} {_processor()!r}".encode()
-        return hashlib.sha256(version + function.__code__.co_code).hexdigest()[:16]
+        function, code = self.py_func, self.py_func.__code__
+        constants = [each for each in code.co_consts if isinstance(each, _CONSTANT)]
+        parts = function.__module__, kinds, _processor(), code.co_names, constants
+        return hashlib.sha256(repr(parts).encode() + code.co_code).hexdigest()[:16]
 
 
 def kernel(function: Callable[..., Any]) -> Kernel:
@@ -101,13 +102,51 @@ def kernel(function: Callable[..., Any]) -> Kernel:
 
 _one_at_a_time = threading.RLock()
 
+if hasattr(os, "register_at_fork"):
+    # A forked process has none of its parent's threads: what one of them had begun to
+    # compile, or held a lock of LLVM's for, would never end there.
+    os.register_at_fork(
+        before=_one_at_a_time.acquire,
+        after_in_parent=_one_at_a_time.release,
+        after_in_child=_one_at_a_time.release,
+    )
 
-def _keep(path: Path, machine_code: MachineCode) -> None:
+
+_checked: set[PrivateFolder | None] = set()
+
+
+def _check_compiler(folder: PrivateFolder | None) -> None:
+    """Make sure that what numba compiles takes arguments as they are given here."""
+    if folder not in _checked:
+        from skybake.jit.canary import check_arguments
+
+        check_arguments(folder)
+        _checked.add(folder)
+
+
+def _file(symbol: str) -> str:
+    return f"{symbol}{KERNEL_SUFFIX}"
+
+
+def _load(folder: PrivateFolder, symbol: str, purpose: str) -> MachineCode | None:
+    """Read a kernel; None if it is missing, or is not what was written for that purpose."""
+    stored = folder.read(_file(symbol))
+    content = None if stored is None else remove_digest(stored, purpose)
+    if content is None:
+        return None
+    try:
+        machine_code = MachineCode.from_bytes(content)
+    except ValueError:
+        return None
+    return machine_code if machine_code.symbol == symbol else None
+
+
+def _keep(folder: PrivateFolder, machine_code: MachineCode, purpose: str) -> None:
     """Write a file; where that fails the code serves this process only."""
     try:
-        write_sealed(path, machine_code.to_bytes())
+        folder.write(_file(machine_code.symbol), add_digest(machine_code.to_bytes(), purpose))
     except OSError as error:
-        warn_of_loss(path.parent, error)
+        warn_of_loss(folder.path, error)
 
 
 @functools.cache

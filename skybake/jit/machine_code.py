@@ -8,10 +8,14 @@ from __future__ import annotations
 
 import ctypes
 import functools
+import itertools
 import struct
 from typing import Any, NamedTuple
 
 import llvmlite.binding as llvm
+
+RESULTS = ("none", "bool", "int", "float")
+"""What a kernel may return."""
 
 
 class MachineCode(NamedTuple):
@@ -23,7 +27,7 @@ class MachineCode(NamedTuple):
         Name of its entry: a C function ``int32 (const int64 *words, int64 *result)`` that
         returns 0 unless the kernel raised an exception.
     result : str
-        What it returns: none, bool, int or float.
+        What it returns, one of `RESULTS`.
     code : bytes
         An object file.
     """
@@ -38,9 +42,17 @@ class MachineCode(NamedTuple):
 
     @classmethod
     def from_bytes(cls, content: memoryview) -> MachineCode:
-        """Read what `to_bytes` returned."""
+        """Read what `to_bytes` returned.
+
+        Raises
+        ------
+        ValueError
+            If it is anything else.
+        """
         head, _, code = bytes(content).partition(b"\n")
         symbol, result = head.decode().split()
+        if result not in RESULTS:
+            raise ValueError(f"{symbol}: must return one of {', '.join(RESULTS)}, got {result}")
         return cls(symbol, result, code)
 
 
@@ -74,15 +86,23 @@ class Entry:
 
 def _link(machine_code: MachineCode) -> int:
     """Link code into this process; returns the address of its entry."""
-    engine = _engine()
-    engine.add_object_file(llvm.ObjectFileRef.from_data(machine_code.code))
-    engine.finalize_object()
-    return int(engine.get_function_address(machine_code.symbol))
+    symbol = machine_code.symbol
+    builder = llvm.JITLibraryBuilder().add_object_img(machine_code.code).export_symbol(symbol)
+    # Kernels call the C library's mathematics.
+    name = f"{symbol} {next(_numbers)}"
+    library = builder.add_current_process().link(_linker(), name)
+    # Its code goes when the library does.
+    _libraries.append(library)
+    return int(library[symbol])
+
+
+_libraries: list[Any] = []
+_numbers = itertools.count()
 
 
 @functools.cache
-def _engine() -> Any:
+def _linker() -> Any:
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     machine = llvm.Target.from_default_triple().create_target_machine(jit=True)
-    return llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine)
+    return llvm.create_lljit_compiler(machine)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from skybake.image.stages import Stages
+from skybake.jit.kept import Kept
 from skybake.optics.medium import Array
-from skybake.pipeline.kept import Kept
 from skybake.scattering.atmosphere import atmosphere_key
 from skybake.sky.sky import Sky
 from skybake.sky.spectral_table import SpectralTable

@@ -6,8 +6,10 @@ import math
 
 import numpy as np
 
-from skybake.jit.shared_kernel import shared_kernel
+from skybake.jit.kernel import kernel
 from skybake.reference.rays import node_value
+
+Direction = tuple[float, float, float]
 
 _GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 _MIX_A = np.uint64(0xBF58476D1CE4E5B9)
@@ -15,7 +17,7 @@ _MIX_B = np.uint64(0x94D049BB133111EB)
 _S11, _S27, _S30, _S31 = np.uint64(11), np.uint64(27), np.uint64(30), np.uint64(31)
 
 
-@shared_kernel
+@kernel
 def uniform(state):
     """Next random number in [0, 1) of SplitMix64 (Steele et al. 2014); `state` is one uint64."""
     state[0] += _GOLDEN
@@ -26,13 +28,13 @@ def uniform(state):
     return float(z >> _S11) * 2.0**-53
 
 
-@shared_kernel
+@kernel
 def dot(a, b):
     """Scalar product of two triples."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@shared_kernel
+@kernel
 def advance(up, radius, direction, distance):
     """Vertical at the place `distance` along `direction` from radius `radius` under `up`."""
     x = up[0] * radius + direction[0] * distance
@@ -42,7 +44,7 @@ def advance(up, radius, direction, distance):
     return x * norm, y * norm, z * norm
 
 
-@shared_kernel
+@kernel
 def around(axis, versine, azimuth):
     """Direction at 1 - cosine = `versine` from `axis`, turned by `azimuth` (Duff et al. 2017)."""
     sine = math.sqrt(max(0.0, versine * (2.0 - versine)))
@@ -60,7 +62,7 @@ def around(axis, versine, azimuth):
     return dx * norm, dy * norm, dz * norm
 
 
-@shared_kernel
+@kernel
 def angle_node(intervals, a, b):
     """Place of the angle between two directions among `scattering_angles`, in intervals from 0."""
     # Half the distance between the directions is sin(theta/2), half that of the
@@ -75,7 +77,7 @@ def angle_node(intervals, a, b):
     return intervals - half * min(1.0, math.sqrt(math.sqrt(2.0 * backward2)))
 
 
-@shared_kernel
+@kernel
 def scattering_at(air, k, h, each):
     """Write every constituent's scattering coefficient into `each`; returns their sum, in km⁻¹."""
     total = 0.0
@@ -85,7 +87,7 @@ def scattering_at(air, k, h, each):
     return total
 
 
-@shared_kernel
+@kernel
 def phase_and_lobe(air, each, total, a, b):
     """Phase function of the mixture between `a` and `b`, and the density it is drawn with."""
     intervals = air.phase.shape[1] - 1
@@ -101,7 +103,7 @@ def phase_and_lobe(air, each, total, a, b):
     return phase, lobe
 
 
-@shared_kernel
+@kernel
 def draw_lobe(air, each, total, axis, state):
     """Direction around `axis` by the phase functions' histograms."""
     pick = uniform(state) * total
@@ -117,7 +119,7 @@ def draw_lobe(air, each, total, axis, state):
     return around(axis, low + (high - low) * uniform(state), 2.0 * math.pi * uniform(state))
 
 
-@shared_kernel
+@kernel
 def draw_cosine(axis, cone, state):
     """Direction with density proportional to its cosine to `axis`, where sin² is below `cone`."""
     u = cone * uniform(state)
@@ -125,7 +127,7 @@ def draw_cosine(axis, cone, state):
     return around(axis, u / (1.0 + math.sqrt(1.0 - u)), 2.0 * math.pi * uniform(state))
 
 
-@shared_kernel
+@kernel
 def _versine(i, intervals):
     """1 - cosine of the i-th of `scattering_angles`, which is x⁴ in their forward half."""
     x = 2.0 * min(i, intervals - i) / intervals

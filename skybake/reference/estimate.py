@@ -13,13 +13,13 @@ from skybake.jit.workers import ALL_CPUS
 from skybake.optics.medium import Medium
 from skybake.optics.phase import eval_phase
 from skybake.reference.air import Air, air_at
+from skybake.reference.directions import Direction
 from skybake.reference.guide import Guide, make_guide
 from skybake.reference.paths import mean_irradiance, mean_radiance
 from skybake.reference.rays import transmittance_to_space
 from skybake.reference.single import trace_single
 
 Array = npt.NDArray[np.float64]
-Direction = tuple[float, float, float]
 
 BATCHES = 32
 """Independent means that a standard error is taken from, itself then good to 13 %."""

@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from skybake.jit.shared_kernel import shared_kernel
+from skybake.jit.kernel import kernel
+from skybake.reference.air import Air
 from skybake.reference.directions import uniform
 from skybake.reference.rays import (
     altitude_on_ray,
@@ -57,28 +58,33 @@ class Guide(NamedTuple):
     top: float
 
 
-@shared_kernel
-def make_guide(air):
+def make_guide(air: Air) -> Guide:
     """Light field of isotropic scattering, by a few orders, steps and rays."""
-    top = air.altitude[-1]
-    direct = np.empty((ALTITUDES, SUNS))
-    for i in range(ALTITUDES):
-        for j in range(SUNS):
-            direct[i, j] = transmittance_to_space(air, _altitude(i, top), _square(j, SUNS - 1))
+    nodes = (ALTITUDES, SUNS)
     # Every place is lit a little, or no path would go where the model is dark.
-    ambient = np.full((ALTITUDES, SUNS), 1e-12)
-    guide = Guide(direct, ambient, np.empty((ALTITUDES, SUNS, CELLS)), top)
-    for _ in range(ORDERS):
-        ambient = np.empty((ALTITUDES, SUNS))
-        for i in range(ALTITUDES):
-            for j in range(SUNS):
-                ambient[i, j] = _gather(air, guide, i, j)
-        guide.ambient[:] = ambient
-    _add_diffusion(air, guide)
+    ambient, cells = np.full(nodes, 1e-12), np.empty((*nodes, CELLS))
+    guide = Guide(np.empty(nodes), ambient, cells, float(air.altitude[-1]))
+    _fill_guide(air, guide, np.empty(nodes), np.empty(CELLS))
     return guide
 
 
-@shared_kernel
+@kernel
+def _fill_guide(air, guide, next_ambient, radiance):
+    for i in range(ALTITUDES):
+        for j in range(SUNS):
+            mu_s = _square(j, SUNS - 1)
+            guide.direct[i, j] = transmittance_to_space(air, _altitude(i, guide.top), mu_s)
+    for _ in range(ORDERS):
+        for i in range(ALTITUDES):
+            for j in range(SUNS):
+                next_ambient[i, j] = _gather(air, guide, i, j, radiance)
+        for i in range(ALTITUDES):
+            for j in range(SUNS):
+                guide.ambient[i, j] = next_ambient[i, j]
+    _add_diffusion(air, guide)
+
+
+@kernel
 def _add_diffusion(air, guide):
     """Light that seeps through thick air, which few orders leave dark, as 1 / optical depth."""
     k_last = len(air.altitude) - 1
@@ -94,12 +100,11 @@ def _add_diffusion(air, guide):
             guide.ambient[i, j] += mu_s * max(0.0, depth - 1.0) / (1.0 + depth) ** 2
 
 
-@shared_kernel
-def _gather(air, guide, i, j):
+@kernel
+def _gather(air, guide, i, j, radiance):
     """Fill the directions of one node from the guide's last state; returns its ambient light."""
     h = _altitude(i, guide.top)
     mu_s = _square(j, SUNS - 1)
-    radiance = np.empty(CELLS)
     mean = 1e-12
     for cell in range(CELLS):
         radiance[cell] = _seen(air, guide, h, mu_s, cell)
@@ -108,29 +113,30 @@ def _gather(air, guide, i, j):
     for cell in range(CELLS):
         running += (radiance[cell] + 0.1 * mean) * _cell_solid_angle(cell)
         guide.cells[i, j, cell] = running
-    guide.cells[i, j] /= running
+    for cell in range(CELLS):
+        guide.cells[i, j, cell] /= running
     return 4.0 * math.pi * mean
 
 
-@shared_kernel
+@kernel
 def _altitude(i, top):
     return top * (i / (ALTITUDES - 1)) ** 2
 
 
-@shared_kernel
+@kernel
 def _square(j, last):
     """From -1 to 1 over j = 0 to `last`, crowding at 0."""
     x = 2.0 * j / last - 1.0
     return x * abs(x)
 
 
-@shared_kernel
+@kernel
 def _cell_solid_angle(cell):
     e = cell // AZIMUTHS
     return (_square(e + 1, ELEVATIONS) - _square(e, ELEVATIONS)) * 2.0 * math.pi / AZIMUTHS
 
 
-@shared_kernel
+@kernel
 def _seen(air, guide, h, mu_s, cell):
     mu = 0.5 * (_square(cell // AZIMUTHS, ELEVATIONS) + _square(cell // AZIMUTHS + 1, ELEVATIONS))
     azimuth = (cell % AZIMUTHS + 0.5) * math.pi / AZIMUTHS
@@ -168,18 +174,18 @@ def _seen(air, guide, h, mu_s, cell):
     return radiance
 
 
-@shared_kernel
+@kernel
 def _sun_place(mu_s):
     root = math.copysign(math.sqrt(min(1.0, abs(mu_s))), mu_s)
     return 0.5 * (root + 1.0) * (SUNS - 1)
 
 
-@shared_kernel
+@kernel
 def _altitude_place(guide, h):
     return math.sqrt(min(1.0, max(0.0, h / guide.top))) * (ALTITUDES - 1)
 
 
-@shared_kernel
+@kernel
 def look_up(guide, table, h, mu_s):
     """One of the guide's tables around altitude `h` with the sun at cosine `mu_s`."""
     x = _altitude_place(guide, h)
@@ -193,7 +199,7 @@ def look_up(guide, table, h, mu_s):
     return (1.0 - u) * low + u * high
 
 
-@shared_kernel
+@kernel
 def draw_guided(guide, h, mu_s, up, sun, state):
     """Direction drawn by the guide's radiance at the nearest of its altitudes and suns."""
     cells = guide.cells[round(_altitude_place(guide, h)), round(_sun_place(mu_s))]
@@ -215,7 +221,7 @@ def draw_guided(guide, h, mu_s, up, sun, state):
     return x * norm, y * norm, z * norm
 
 
-@shared_kernel
+@kernel
 def guided_density(guide, h, mu_s, up, sun, direction):
     """Density per solid angle with which `draw_guided` draws `direction`."""
     cells = guide.cells[round(_altitude_place(guide, h)), round(_sun_place(mu_s))]
@@ -231,7 +237,7 @@ def guided_density(guide, h, mu_s, up, sun, direction):
     return probability / _cell_solid_angle(cell)
 
 
-@shared_kernel
+@kernel
 def _horizontal_axes(up, sun):
     """Horizontal vectors toward the sun's azimuth and 90 degrees from it."""
     mu_s = up[0] * sun[0] + up[1] * sun[1] + up[2] * sun[2]

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
-from skybake.jit.shared_kernel import shared_kernel
+from skybake.jit.kernel import kernel
+from skybake.reference.air import Air
 from skybake.reference.directions import (
+    Direction,
     advance,
     dot,
     draw_cosine,
@@ -16,8 +20,9 @@ from skybake.reference.directions import (
     scattering_at,
     uniform,
 )
-from skybake.reference.guide import draw_guided, guided_density, look_up
+from skybake.reference.guide import Guide, draw_guided, guided_density, look_up
 from skybake.reference.rays import (
+    Cuts,
     new_cuts,
     node_value,
     shell_of,
@@ -36,7 +41,7 @@ SURVIVAL = 0.3
 """Paths that weigh less than this, and by the guide promise less, play Russian roulette."""
 
 
-@shared_kernel
+@kernel
 def follow(
     air, guide, sun, ray, stretches, cumulative, u, up, h, direction, first, last, scratch, state
 ):
@@ -106,7 +111,7 @@ def follow(
         order += 1
 
 
-@shared_kernel
+@kernel
 def _sunlight(air, each, total, h, mu_s, direction, sun, at_ground):
     """Sunlight that a vertex sends back along `direction`, per unit of what it scatters."""
     if at_ground:
@@ -118,7 +123,7 @@ def _sunlight(air, each, total, h, mu_s, direction, sun, at_ground):
     return toward_observer * transmittance_to_space(air, h, mu_s)
 
 
-@shared_kernel
+@kernel
 def turn(air, guide, each, total, h, up, direction, sun, at_ground, order, state):
     """Next direction of a path, drawn around the last one or around the sun, and its weight."""
     # A long path whose every turn were drawn so would multiply weights up to 1 / (1 - shares).
@@ -147,14 +152,47 @@ def turn(air, guide, each, total, h, up, direction, sun, at_ground, order, state
     return turned, wanted / density if density > 0.0 else 0.0
 
 
-@shared_kernel
-def mean_radiance(air, guide, sun, h, direction, first, last, samples, seed):
+class _Room(NamedTuple):
+    """Work space of paths: for their first rays, which are kept, and for those that follow."""
+
+    first_cuts: Cuts
+    first_stretches: npt.NDArray[np.float64]
+    first_coefficients: npt.NDArray[np.float64]
+    cuts: Cuts
+    stretches: npt.NDArray[np.float64]
+    coefficients: npt.NDArray[np.float64]
+
+
+def _new_room(air: Air) -> _Room:
+    constituents = len(air.scattering)
+    first = new_cuts(air), new_stretches(air), np.zeros(constituents)
+    return _Room(*first, new_cuts(air), new_stretches(air), np.zeros(constituents))
+
+
+def mean_radiance(
+    air: Air,
+    guide: Guide,
+    sun: Direction,
+    h: float,
+    direction: Direction,
+    first: int,
+    last: int,
+    samples: int,
+    seed: np.uint64,
+) -> float:
     """Mean over `samples` paths from altitude `h` under the vertical (0, 0, 1)."""
-    state = np.array([seed], dtype=np.uint64)
+    state = np.array([seed], np.uint64)
+    return float(
+        _mean_radiance(air, guide, sun, h, direction, first, last, samples, _new_room(air), state)
+    )
+
+
+@kernel
+def _mean_radiance(air, guide, sun, h, direction, first, last, samples, room, state):
     up = (0.0, 0.0, 1.0)
-    scratch = (new_cuts(air), new_stretches(air), np.empty(len(air.scattering)))
-    ray = trace(air, h, direction[2], new_cuts(air))
-    cumulative = new_stretches(air)
+    scratch = (room.cuts, room.stretches, room.coefficients)
+    ray = trace(air, h, direction[2], room.first_cuts)
+    cumulative = room.first_stretches
     stretches = weigh_stretches(
         air, guide, ray, h, sun[2], dot(direction, sun), first <= 1, 1, cumulative
     )
@@ -180,8 +218,9 @@ def mean_radiance(air, guide, sun, h, direction, first, last, samples, seed):
     return total / samples
 
 
-@shared_kernel
-def mean_irradiance(air, guide, sun, h, facing, samples, seed):
+def mean_irradiance(
+    air: Air, guide: Guide, sun: Direction, h: float, facing: float, samples: int, seed: np.uint64
+) -> float:
     """Mean diffuse irradiance on a horizontal plane over `samples` paths.
 
     Parameters
@@ -189,15 +228,18 @@ def mean_irradiance(air, guide, sun, h, facing, samples, seed):
     facing : float
         1 for light from above, -1 for light from below.
     """
-    state = np.array([seed], dtype=np.uint64)
+    state = np.array([seed], np.uint64)
+    return float(_mean_irradiance(air, guide, sun, h, facing, samples, _new_room(air), state))
+
+
+@kernel
+def _mean_irradiance(air, guide, sun, h, facing, samples, room, state):
     up = (0.0, 0.0, 1.0)
     normal = (0.0, 0.0, facing)
-    each = np.empty(len(air.scattering))
-    scratch = (new_cuts(air), new_stretches(air), each)
-    first_cuts = new_cuts(air)
-    cumulative = new_stretches(air)
+    scratch = (room.cuts, room.stretches, room.coefficients)
+    cumulative = room.first_stretches
     top = air.altitude[-1]
-    coefficients = np.zeros(len(air.scattering))
+    coefficients = room.first_coefficients
     scattering = 0.0
     # Outside, all light comes from the cone that the atmosphere fills.
     cone = 1.0
@@ -219,7 +261,7 @@ def mean_irradiance(air, guide, sun, h, facing, samples, seed):
         if around_sun > 0.0:
             _, lobe = phase_and_lobe(air, coefficients, scattering, direction, sun)
             density += around_sun * lobe
-        ray = trace(air, h, direction[2], first_cuts)
+        ray = trace(air, h, direction[2], room.first_cuts)
         stretches = weigh_stretches(
             air, guide, ray, h, sun[2], dot(direction, sun), True, 1, cumulative
         )

@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from skybake.jit.shared_kernel import shared_kernel
+from skybake.jit.kernel import kernel
+from skybake.reference.air import Air
 
 
 class Cuts(NamedTuple):
@@ -58,32 +59,32 @@ class Ray(NamedTuple):
     reaches_ground: bool
 
 
-@shared_kernel
+@kernel
 def tangent_altitude(r_bottom, h, mu):
     """Altitude of the ray's nearest point to the centre; it may lie underground."""
     return h - (r_bottom + h) * mu * mu / (1.0 + math.sqrt(max(0.0, 1.0 - mu * mu)))
 
 
-@shared_kernel
+@kernel
 def distance_from_tangent(r_bottom, h_tangent, h):
     """Distance along the ray between its nearest point and altitude `h`."""
     return math.sqrt(max(0.0, (h - h_tangent) * (2.0 * r_bottom + h + h_tangent)))
 
 
-@shared_kernel
+@kernel
 def altitude_on_ray(r_bottom, h_tangent, s):
     """Altitude at distance `s` from the ray's nearest point."""
     p = r_bottom + h_tangent
     return h_tangent + s * s / (math.sqrt(p * p + s * s) + p)
 
 
-@shared_kernel
+@kernel
 def hits_ground(h_tangent, mu):
     """Whether a ray that starts above the ground meets it."""
     return mu < 0.0 and h_tangent < 0.0
 
 
-@shared_kernel
+@kernel
 def shell_of(altitude, h):
     """Index of the shell, nodes k to k + 1, that holds altitude `h`."""
     last = len(altitude) - 2
@@ -95,14 +96,14 @@ def shell_of(altitude, h):
     return k
 
 
-@shared_kernel
+@kernel
 def node_value(altitude, values, k, h):
     """Linear interpolation in shell `k`."""
     f = (h - altitude[k]) / (altitude[k + 1] - altitude[k])
     return values[k] + f * (values[k + 1] - values[k])
 
 
-@shared_kernel
+@kernel
 def column(air, h_tangent, k, s0, extinction0, s1, extinction1):
     """Optical depth between two places of a ray in shell `k`, on one side of its nearest point.
 
@@ -119,7 +120,7 @@ def column(air, h_tangent, k, s0, extinction0, s1, extinction1):
     return max(0.0, chord - slope * curvature * length * length * length / 12.0)
 
 
-@shared_kernel
+@kernel
 def depth_ascending(air, h_tangent, h0, h1):
     """Optical depth from altitude `h0` up to `h1` along a ray beyond its nearest point."""
     altitude = air.altitude
@@ -138,7 +139,7 @@ def depth_ascending(air, h_tangent, h0, h1):
     return depth + column(air, h_tangent, k, s0, extinction0, s1, extinction1)
 
 
-@shared_kernel
+@kernel
 def transmittance_to_space(air, h, mu):
     """Transmittance from altitude `h` to the top along cosine `mu`; 0 through the ground."""
     h_tangent = tangent_altitude(air.r_bottom, h, mu)
@@ -157,14 +158,13 @@ def transmittance_to_space(air, h, mu):
     return math.exp(-depth - depth_ascending(air, h_tangent, h_tangent, top))
 
 
-@shared_kernel
-def new_cuts(air):
+def new_cuts(air: Air) -> Cuts:
     """Room for `trace`: every shell may be crossed twice."""
     size = 2 * len(air.altitude) + 2
     return Cuts(np.empty(size), np.empty(size), np.empty(size), np.empty(size, np.int64))
 
 
-@shared_kernel
+@kernel
 def trace(air, h, mu, cuts):
     """Cut the ray from altitude `h` along cosine `mu` at every shell it crosses, into `cuts`."""
     altitude = air.altitude
@@ -208,7 +208,7 @@ def trace(air, h, mu, cuts):
     return Ray(cuts, n, h_tangent, start, reaches_ground)
 
 
-@shared_kernel
+@kernel
 def place_at_depth(air, h_tangent, k, s0, h0, s1, h1, target):
     """Where, from `s0` to `s1` in shell `k`, the optical depth from `s0` reaches `target`."""
     before = node_value(air.altitude, air.extinction, k, h0)

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import numpy.typing as npt
 
-from skybake.jit.shared_kernel import shared_kernel
+from skybake.jit.kernel import kernel
+from skybake.reference.air import Air
 from skybake.reference.directions import uniform
 from skybake.reference.guide import look_up
 from skybake.reference.rays import altitude_on_ray, place_at_depth
@@ -17,13 +19,12 @@ GUIDED_STRETCHES = 0.8
 """Share of a path's first vertices drawn by the guide, the others as an unguided photon's."""
 
 
-@shared_kernel
-def new_stretches(air):
+def new_stretches(air: Air) -> npt.NDArray[np.float64]:
     """Room for `weigh_stretches`."""
     return np.empty(2 * len(air.altitude) // SEGMENTS_PER_STRETCH + 4)
 
 
-@shared_kernel
+@kernel
 def weigh_stretches(air, guide, ray, h, mu_s, nu, lit, order, cumulative):
     """Give each stretch of the ray, and the ground last, a probability, as running sums.
 
@@ -78,12 +79,12 @@ def weigh_stretches(air, guide, ray, h, mu_s, nu, lit, order, cumulative):
     return count
 
 
-@shared_kernel
+@kernel
 def _mu_s_at_cut(air, ray, i, r_start, mu_s, nu):
     return (r_start * mu_s + (ray.cuts.s[i] - ray.start) * nu) / (air.r_bottom + ray.cuts.h[i])
 
 
-@shared_kernel
+@kernel
 def _promise(air, guide, ray, i, r_start, mu_s, nu, lit):
     h = ray.cuts.h[i]
     mu_s_there = _mu_s_at_cut(air, ray, i, r_start, mu_s, nu)
@@ -93,7 +94,7 @@ def _promise(air, guide, ray, i, r_start, mu_s, nu, lit):
     return light
 
 
-@shared_kernel
+@kernel
 def draw_vertex(air, ray, stretches, cumulative, u, state):
     """Where the ray scatters or meets the ground, and the weight of having drawn that.
 

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import hashlib
-import threading
-from collections import OrderedDict
-from concurrent.futures import Future
 from typing import Any
 
 import numpy as np
 
+from skybake.jit.kept import Kept
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.delta_m import ScaledMedium, keep_unscaled, phase_groups, scale_medium
 from skybake.optics.medium import Medium, pad_wavelengths
@@ -22,16 +20,19 @@ from skybake.scattering.solver import solve_field
 from skybake.scattering.store import (
     arrays_from_content,
     content_from_arrays,
+    has_tables,
     read_tables,
-    stored_tables,
     write_tables,
 )
+from skybake.scattering.table_shapes import are_tables_of
 from skybake.scattering.tables import Atmosphere
 from skybake.scattering.transmittance import build_columns
 from skybake.transport.shells import altitude_shells
 
 KEPT = 4
 """Atmospheres that stay in memory: of a sequence all maps share one, or each has its own."""
+
+_DELTA_M = tuple(name for name in ScaledMedium._fields if name != "medium")
 
 
 def build_atmosphere(medium: Medium, method: str, workers: Workers = ALL_CPUS) -> Atmosphere:
@@ -75,36 +76,23 @@ def dark_atmosphere(medium: Medium, method: str, workers: Workers = ALL_CPUS) ->
     )
 
 
-_recent: OrderedDict[str, Future[Atmosphere]] = OrderedDict()
-_lock = threading.Lock()
+_recent: Kept[str, Atmosphere] = Kept(KEPT)
 
 
 def load_atmosphere(medium: Medium, method: str, workers: Workers = ALL_CPUS) -> Atmosphere:
     """Return the tables of a medium from memory or disk, or build and keep them.
 
-    A file that is missing or not, bit by bit, what was once written is made anew;
+    A file that is missing, or is not bit by bit what was once written under its name, or
+    whose arrays have other shapes than the medium asks for, is made anew;
     where none can be written the tables are built by every process.
     """
     key = atmosphere_key(medium, method)
-    with _lock:
-        kept = _recent.pop(key, None)
-        pending = _recent[key] = kept or Future()
-        while len(_recent) > KEPT:
-            _recent.popitem(last=False)
-    if kept is None:
-        # Of several threads that need the same tables one makes them, and the others wait.
-        try:
-            pending.set_result(_read_or_build(medium, method, key, workers))
-        except BaseException as error:
-            _recent.pop(key, None)
-            pending.set_exception(error)
-            raise
-    return pending.result()
+    return _recent.get(key, lambda: _read_or_build(medium, method, key, workers))
 
 
 def _read_or_build(medium: Medium, method: str, key: str, workers: Workers) -> Atmosphere:
     arrays = read_tables(key)
-    if arrays is not None:
+    if arrays is not None and are_tables_of(medium, arrays):
         return _from_arrays(medium, arrays)
     atmosphere = build_atmosphere(medium, method, workers)
     write_tables(key, _to_arrays(atmosphere))
@@ -113,7 +101,8 @@ def _read_or_build(medium: Medium, method: str, key: str, workers: Workers) -> A
 
 def atmosphere_content(medium: Medium, method: str) -> bytes:
     """Return the tables of a medium as a file holds them, for another machine."""
-    return content_from_arrays(_to_arrays(load_atmosphere(medium, method)))
+    arrays = _to_arrays(load_atmosphere(medium, method))
+    return content_from_arrays(atmosphere_key(medium, method), arrays)
 
 
 def adopt_atmosphere(medium: Medium, method: str, content: bytes) -> None:
@@ -122,13 +111,10 @@ def adopt_atmosphere(medium: Medium, method: str, content: bytes) -> None:
     Content that is not as it was made is left alone: the tables are then built here.
     """
     key = atmosphere_key(medium, method)
-    arrays = None if key in _recent else arrays_from_content(content)
-    if arrays is None:
+    arrays = None if _recent.has(key) else arrays_from_content(key, content)
+    if arrays is None or not are_tables_of(medium, arrays):
         return
-    adopted: Future[Atmosphere] = Future()
-    adopted.set_result(_from_arrays(medium, arrays))
-    with _lock:
-        _recent[key] = adopted
+    _recent.put(key, _from_arrays(medium, arrays))
 
 
 def forget_atmospheres() -> None:
@@ -138,20 +124,22 @@ def forget_atmospheres() -> None:
 
 def is_stored(medium: Medium, method: str) -> bool:
     """Whether `load_atmosphere` would find a file."""
-    return stored_tables(atmosphere_key(medium, method)) is not None
+    return has_tables(atmosphere_key(medium, method))
 
 
 def atmosphere_key(medium: Medium, method: str) -> str:
     """Name of a medium's tables: a digest of everything that they depend on but the code."""
     digest = hashlib.sha256(f"{method} {medium.r_bottom!r} {medium.r_top!r}".encode())
-    for array in medium[2:]:
+    for array in (value for value in medium if isinstance(value, np.ndarray)):
         digest.update(f"{array.shape}".encode() + np.ascontiguousarray(array).tobytes())
     return digest.hexdigest()[:32]
 
 
 def _to_arrays(atmosphere: Atmosphere) -> dict[str, Any]:
     scaled, field = atmosphere.scaled, atmosphere.field
-    arrays = {f"cut_{name}": getattr(scaled, name) for name in scaled._fields if name != "medium"}
+    arrays = {
+        f"delta_m_{name}": getattr(scaled, name) for name in scaled._fields if name != "medium"
+    }
     return arrays | {
         "scaled_scattering": scaled.medium.scattering,
         "scaled_extinction": scaled.medium.extinction,
@@ -163,18 +151,20 @@ def _to_arrays(atmosphere: Atmosphere) -> dict[str, Any]:
         "source": field.source,
         "radiance": field.radiance,
         "ground": field.ground,
-        "lobe_curves": atmosphere.basis.curves,
-        "lobe_weights": atmosphere.basis.weights,
+        "basis_curves": atmosphere.basis.curves,
+        "basis_weights": atmosphere.basis.weights,
     }
 
 
 def _from_arrays(medium: Medium, arrays: dict[str, Any]) -> Atmosphere:
-    cut_arrays = {name: arrays[f"cut_{name}"] for name in ScaledMedium._fields if name != "medium"}
+    delta_m_arrays = {
+        name: arrays[f"delta_m_{name}"] for name in ScaledMedium._fields if name != "medium"
+    }
     constituents = medium.scattering.shape[0]
     scaled = pad_wavelengths(medium)._replace(
         scattering=arrays["scaled_scattering"],
         extinction=arrays["scaled_extinction"],
-        phase=cut_arrays["phase"][:constituents],
+        phase=delta_m_arrays["phase"][:constituents],
     )
     field = DiffuseField(
         harmonics=build_harmonics(int(arrays["order"])),
@@ -189,9 +179,9 @@ def _from_arrays(medium: Medium, arrays: dict[str, Any]) -> Atmosphere:
     )
     return Atmosphere(
         medium=medium,
-        scaled=ScaledMedium(medium=scaled, **cut_arrays),
+        scaled=ScaledMedium(medium=scaled, **delta_m_arrays),
         shells=arrays["shells"],
         columns=arrays["columns"],
         field=field,
-        basis=PhaseBasis(arrays["lobe_curves"], arrays["lobe_weights"]),
+        basis=PhaseBasis(arrays["basis_curves"], arrays["basis_weights"]),
     )

@@ -7,16 +7,15 @@ from __future__ import annotations
 
 import json
 import math
-import os
 from collections.abc import Mapping
 from contextlib import suppress
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from skybake.jit.cache import TABLES_FOLDER, TABLES_SUFFIX, cache_directory
-from skybake.jit.sealed import read_sealed, seal, unseal, write_sealed
+from skybake.jit.cache import TABLES_FOLDER, TABLES_SUFFIX, cache_folder
+from skybake.jit.digest import add_digest, remove_digest
+from skybake.jit.private_folder import NotPrivateError, PrivateFolder
 
 _HEAD_SIZE = 8
 
@@ -26,41 +25,46 @@ LARGEST_STORE = 1 << 30
 
 def read_tables(key: str) -> dict[str, Any] | None:
     """Return the arrays of a file, or None if it is missing or not as it was written."""
-    path = stored_tables(key)
-    content = None if path is None else read_sealed(path)
-    if path is None or content is None:
-        return None
+    folder = _folder()
     # The time of last use decides what goes first when the folder is full.
-    with suppress(OSError):
-        os.utime(path)
-    return _arrays(content)
+    stored = None if folder is None else folder.read(_file(key), mark_used=True)
+    return None if stored is None else arrays_from_content(key, stored)
 
 
 def write_tables(key: str, arrays: Mapping[str, Any]) -> None:
     """Keep arrays on disk; a full disk only costs the reuse."""
-    path = _path(key)
-    if path is None:
+    folder = _folder()
+    if folder is None:
         return
     with suppress(OSError):
-        write_sealed(path, _content(arrays))
-        _remove_oldest(path.parent)
+        folder.write(_file(key), content_from_arrays(key, arrays))
+        _remove_oldest(folder)
 
 
-def stored_tables(key: str) -> Path | None:
-    """File of a name's arrays, or None if there is none."""
-    path = _path(key)
-    return path if path is not None and path.exists() else None
+def has_tables(key: str) -> bool:
+    """Whether there is a file of a name's arrays."""
+    folder = _folder()
+    return folder is not None and folder.has(_file(key))
 
 
-def content_from_arrays(arrays: Mapping[str, Any]) -> bytes:
+def content_from_arrays(key: str, arrays: Mapping[str, Any]) -> bytes:
     """Return what a file of these arrays holds."""
-    return seal(_content(arrays))
+    return add_digest(_content(arrays), _purpose(key))
 
 
-def arrays_from_content(sealed: bytes) -> dict[str, Any] | None:
-    """Return the arrays of a file, or None if it is not as it was written."""
-    content = unseal(sealed)
-    return None if content is None else _arrays(content)
+def arrays_from_content(key: str, stored: bytes) -> dict[str, Any] | None:
+    """Return the arrays of a name's file, or None if it is not as it was written."""
+    content = remove_digest(stored, _purpose(key))
+    if content is None:
+        return None
+    try:
+        return _arrays(content)
+    except (TypeError, ValueError):
+        return None
+
+
+def _purpose(key: str) -> str:
+    return f"tables {key}"
 
 
 def _content(arrays: Mapping[str, Any]) -> bytes:
@@ -81,19 +85,35 @@ def _arrays(content: memoryview) -> dict[str, Any]:
     return arrays
 
 
-def _path(key: str) -> Path | None:
-    # The folder is named by the code that makes the tables.
-    directory = cache_directory()
-    return None if directory is None else directory / TABLES_FOLDER / f"{key}{TABLES_SUFFIX}"
+def _folder() -> PrivateFolder | None:
+    # The folder above is named by the code that makes the tables.
+    above = cache_folder()
+    if above is None:
+        return None
+    folder = _open.get(above)
+    if folder is None or not folder.is_open():
+        try:
+            folder = above.within(TABLES_FOLDER)
+        except (OSError, NotPrivateError):
+            return None
+        _open.clear()
+        _open[above] = folder
+    return folder
 
 
-def _remove_oldest(folder: Path) -> None:
+_open: dict[PrivateFolder, PrivateFolder] = {}
+
+
+def _file(key: str) -> str:
+    return f"{key}{TABLES_SUFFIX}"
+
+
+def _remove_oldest(folder: PrivateFolder) -> None:
     """Keep the folder below `LARGEST_STORE`."""
-    files = sorted(
-        folder.glob(f"*{TABLES_SUFFIX}"), key=lambda file: file.stat().st_mtime, reverse=True
-    )
+    names = [name for name in folder.names() if name.endswith(TABLES_SUFFIX)]
+    last_used = sorted(((*folder.used_at(name), name) for name in names), reverse=True)
     total = 0
-    for file in files:
-        total += file.stat().st_size
+    for _, size, name in last_used:
+        total += size
         if total > LARGEST_STORE:
-            file.unlink(missing_ok=True)
+            folder.remove(name)

@@ -113,6 +113,31 @@ USES = [
 ]
 
 
+LONG = "/tmp/" + "/".join(["a" * 200] * 30)  # noqa: S108 - longer than a path can be
+
+
+def test_a_place_whose_name_is_too_long_is_one_line(tmp_path):
+    environment = {"SKYBAKE_CACHE_DIR": LONG}
+    for command in (("info",), ("clear",), ("warm",)):
+        status, output, errors = run("cache", *command, env=environment)
+        assert (status, output) == (1, ""), command
+        assert errors.startswith(f"skybake: {LONG[:100]}")
+        assert errors.count("\n") == 1
+        assert len(errors) < 500
+
+
+def test_without_such_a_place_kernels_are_compiled_with_one_warning(tmp_path):
+    code = """
+import numpy as np
+from skybake.scattering.harmonics import build_harmonics, fill_harmonics
+fill_harmonics(build_harmonics(2), 0.5, np.empty(6))
+"""
+    status, _, errors = run(code=f"import warnings\n{code}", env={"SKYBAKE_CACHE_DIR": LONG})
+    assert status == 0
+    assert errors.count("RuntimeWarning") == 1
+    assert "kernel cache must be writable, got File name too long" in errors
+
+
 @pytest.mark.slow
 def test_after_warm_nothing_is_compiled(tmp_path, cold):
     assert run("cache", "warm", "-q", env=cold) == (0, "", "")

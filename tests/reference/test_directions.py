@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from skybake.jit.kernel import kernel
 from skybake.optics.phase import scattering_angles
 from skybake.reference.air import air_at
 from skybake.reference.directions import (
@@ -17,6 +18,26 @@ from tests.truth import truth_medium
 SUN = (np.cos(0.1), 0.0, -np.sin(0.1))
 UP = (0.0, 0.6, 0.8)
 DRAWS = 40_000
+
+
+@kernel
+def draw_lobes(air, each, total, axis, state, directions, densities):
+    """Draw many directions, with the density of each."""
+    for i in range(len(densities)):
+        direction = draw_lobe(air, each, total, axis, state)
+        _, densities[i] = phase_and_lobe(air, each, total, axis, direction)
+        for j in range(3):
+            directions[i, j] = direction[j]
+
+
+@kernel
+def draw_guided_ones(guide, h, mu_s, up, sun, state, directions, densities):
+    """Draw many directions by the guide, with the density of each."""
+    for i in range(len(densities)):
+        direction = draw_guided(guide, h, mu_s, up, sun, state)
+        densities[i] = guided_density(guide, h, mu_s, up, sun, direction)
+        for j in range(3):
+            directions[i, j] = direction[j]
 
 
 def test_random_numbers_are_those_of_splitmix64():
@@ -40,8 +61,8 @@ def test_drawn_directions_have_the_density_that_is_stated_for_them():
     each = np.empty(2)
     total = scattering_at(air, shell_of(air.altitude, 3.0), 3.0, each)
     state = np.array([7], dtype=np.uint64)
-    drawn = np.array([draw_lobe(air, each, total, UP, state) for _ in range(DRAWS)])
-    density = np.array([phase_and_lobe(air, each, total, UP, tuple(d))[1] for d in drawn])
+    drawn, density = np.empty((DRAWS, 3)), np.empty(DRAWS)
+    draw_lobes(air, each, total, UP, state, drawn, density)
     ratio = (drawn @ np.array(UP)) ** 2 / density
     error = ratio.std() / np.sqrt(DRAWS)
     assert error < 0.03 * 4 * np.pi / 3
@@ -52,9 +73,9 @@ def test_guided_directions_have_the_density_that_is_stated_for_them():
     guide = make_guide(air_at(truth_medium("EARTH_A"), 1))
     mu_s = float(np.dot(UP, SUN))
     state = np.array([11], dtype=np.uint64)
-    drawn = [draw_guided(guide, 8.0, mu_s, UP, SUN, state) for _ in range(DRAWS)]
-    density = np.array([guided_density(guide, 8.0, mu_s, UP, SUN, d) for d in drawn])
-    for weight, integral in ((1.0, 4 * np.pi), (np.array(drawn)[:, 0] ** 2, 4 * np.pi / 3)):
+    drawn, density = np.empty((DRAWS, 3)), np.empty(DRAWS)
+    draw_guided_ones(guide, 8.0, mu_s, UP, SUN, state, drawn, density)
+    for weight, integral in ((1.0, 4 * np.pi), (drawn[:, 0] ** 2, 4 * np.pi / 3)):
         ratio = weight / density
         error = ratio.std() / np.sqrt(DRAWS)
         assert error < 0.02 * integral

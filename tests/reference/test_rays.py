@@ -54,7 +54,7 @@ def test_no_light_passes_through_the_ground(uniform_air):
 
 def test_a_ray_from_outside_enters_where_the_air_begins(uniform_air):
     cuts = new_cuts(uniform_air)
-    ray = trace(uniform_air, 36_000.0, -1.0, cuts)
+    ray = trace.py_func(uniform_air, 36_000.0, -1.0, cuts)
     assert ray.reaches_ground
     assert cuts.s[0] - ray.start == pytest.approx(35_900.0, rel=1e-12)
     assert cuts.depth[ray.segments] == pytest.approx(EXTINCTION * TOP, rel=1e-9)
@@ -64,7 +64,7 @@ def test_a_ray_from_outside_enters_where_the_air_begins(uniform_air):
 def test_the_place_at_an_optical_depth_lies_at_that_depth(mu):
     air = air_at(truth_medium("EARTH_A"), 2)
     cuts = new_cuts(air)
-    ray = trace(air, 5.0, mu, cuts)
+    ray = trace.py_func(air, 5.0, mu, cuts)
     for i in range(0, ray.segments, 50):
         step = cuts.depth[i + 1] - cuts.depth[i]
         ends = cuts.s[i], cuts.h[i], cuts.s[i + 1], cuts.h[i + 1]

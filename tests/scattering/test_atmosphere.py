@@ -7,8 +7,16 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
+from skybake.jit.digest import add_digest
+from skybake.jit.private_folder import open_private_folder
 from skybake.scattering import atmosphere, store
-from skybake.scattering.atmosphere import KEPT, build_atmosphere, forget_atmospheres, is_stored
+from skybake.scattering.atmosphere import (
+    KEPT,
+    atmosphere_key,
+    build_atmosphere,
+    forget_atmospheres,
+    is_stored,
+)
 from skybake.scattering.store import arrays_from_content, content_from_arrays
 from tests.media import plain_medium
 
@@ -17,7 +25,8 @@ MEDIUM = plain_medium(lambda h: np.exp(-h / 8.0), [0.01, 0.05])
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    monkeypatch.setattr(store, "cache_directory", lambda: tmp_path)
+    private = open_private_folder(tmp_path)
+    monkeypatch.setattr(store, "cache_folder", lambda: private)
     return tmp_path / "atmospheres"
 
 
@@ -109,18 +118,36 @@ def with_another_bit(whole):
     return whole[:middle] + bytes([whole[middle] ^ 1]) + whole[middle + 1 :]
 
 
-def with_another_array(whole, name, change):
-    """The digest stays."""
-    arrays = arrays_from_content(whole)
-    return whole[:32] + content_from_arrays(arrays | {name: change(arrays[name])})[32:]
+KEY = atmosphere_key(MEDIUM, "hillaire")
+
+
+def with_another_array(whole, name, change, key=KEY):
+    arrays = arrays_from_content(KEY, whole)
+    return content_from_arrays(key, arrays | {name: change(arrays[name])})
 
 
 def with_nan(whole):
-    return with_another_array(whole, "radiance", lambda array: np.full_like(array, np.nan))
+    """The digest stays."""
+    other = with_another_array(whole, "radiance", lambda array: np.full_like(array, np.nan))
+    return whole[:32] + other[32:]
 
 
-def with_another_shape(whole):
-    return with_another_array(whole, "columns", lambda array: array[:, :-1])
+def with_its_own_digest(name, change):
+    return lambda whole: with_another_array(whole, name, change)
+
+
+def of_another_name(whole):
+    return with_another_array(whole, "columns", np.copy, key="0" * 32)
+
+
+def without_an_array(whole):
+    arrays = arrays_from_content(KEY, whole)
+    del arrays["ground"]
+    return content_from_arrays(KEY, arrays)
+
+
+def with_another_head(whole):
+    return add_digest(b"\0" * 8 + b"not JSON", f"tables {KEY}")
 
 
 DAMAGES = [
@@ -129,7 +156,19 @@ DAMAGES = [
     half,
     with_another_bit,
     with_nan,
-    with_another_shape,
+    of_another_name,
+    without_an_array,
+    with_another_head,
+    with_its_own_digest("columns", lambda array: array[:, :-1]),
+    with_its_own_digest("columns", lambda array: array[..., :0]),
+    with_its_own_digest("radiance", lambda array: array[:-1]),
+    with_its_own_digest("radiance", lambda array: array.astype(np.float64)),
+    with_its_own_digest("ground", lambda array: array[:2]),
+    with_its_own_digest("sun_angle", lambda array: array[:, None]),
+    with_its_own_digest("order", lambda array: array + 1),
+    with_its_own_digest("cut_peaked", lambda _: np.array([7])),
+    with_its_own_digest("lobe_weights", lambda array: array[..., :-1]),
+    with_its_own_digest("shells", lambda array: array[:1]),
 ]
 
 
@@ -141,6 +180,19 @@ def test_a_file_that_is_not_what_was_written_is_made_anew(folder, damage):
     path.write_bytes(damage(whole))
     assert_same(load(MEDIUM), built)
     assert path.read_bytes() == whole
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_tables_from_another_machine_that_do_not_fit_are_made_anew(folder, damage, monkeypatch):
+    built = load(MEDIUM)
+    (path,) = folder.iterdir()
+    whole = path.read_bytes()
+    path.unlink()
+    for content, builds in ((whole, 0), (damage(whole), 1)):
+        forget_atmospheres()
+        atmosphere.adopt_atmosphere(MEDIUM, "hillaire", content)
+        assert_same(atmosphere.load_atmosphere(MEDIUM, "hillaire"), built)
+        assert len(list(folder.iterdir())) == builds
 
 
 def test_a_file_in_place_of_the_folder_only_costs_the_reuse(folder):

@@ -12,7 +12,7 @@ from contextlib import AbstractContextManager, nullcontext
 import numpy as np
 
 from skybake.formats.half import fill_halves, half_rows
-from skybake.jit.beside import compile_beside
+from skybake.jit.background_compiler import compile_in_background, end_with_parent
 from skybake.jit.cache import is_warm
 from skybake.optics.delta_m import scale_medium
 from skybake.optics.medium import build_medium, pad_wavelengths
@@ -30,11 +30,11 @@ from skybake.transport.samples import allocate_samples
 KERNELS = (fill_each, add_diffuse, fill_sight_columns, fill_directions, fill_halves)
 
 
-def beside() -> AbstractContextManager[None]:
+def compiled_in_background() -> AbstractContextManager[None]:
     """Run this module beside a process that finds no kernels on disk, while it renders."""
     if is_warm():
         return nullcontext()
-    return compile_beside(__name__, frozenset(kernel.py_func.__name__ for kernel in KERNELS))
+    return compile_in_background(__name__, frozenset(kernel.py_func.__name__ for kernel in KERNELS))
 
 
 def compile_kernels() -> None:
@@ -59,4 +59,4 @@ def compile_kernels() -> None:
 
 
 if __name__ == "__main__":
-    compile_kernels()
+    end_with_parent(compile_kernels)

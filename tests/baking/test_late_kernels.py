@@ -6,7 +6,7 @@ import sys
 from collections import Counter
 from pathlib import Path
 
-from skybake.baking.companion import KERNELS
+from skybake.baking.late_kernels import KERNELS
 
 
 def render(folder, **environment):
@@ -40,8 +40,8 @@ def test_kernels_of_a_process_that_failed_are_compiled_by_who_needs_them(tmp_pat
     script = """
 import numpy as np
 from skybake.scattering.harmonics import build_harmonics, fill_harmonics
-from skybake.jit.beside import compile_beside
-with compile_beside("skybake.no_such_module", frozenset({"fill_harmonics"})):
+from skybake.jit.background_compiler import compile_in_background
+with compile_in_background("skybake.no_such_module", frozenset({"fill_harmonics"})):
     fill_harmonics(build_harmonics(1), 0.5, out := np.empty(3))
 print(out[0] > 0.0)
 """

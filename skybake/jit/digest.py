@@ -1,0 +1,38 @@
+"""Content behind a digest of itself and of what it is for.
+
+What was cut short, was damaged, or lies under a name that is not its own has another
+digest, and is made anew instead of being used. The digest is no signature: who may write
+the files is settled by `skybake.jit.private_folder`.
+"""
+
+from __future__ import annotations
+
+import hashlib
+
+_SIZE = hashlib.sha256().digest_size
+
+
+def add_digest(content: bytes, purpose: str) -> bytes:
+    """Return content behind a SHA-256 digest of its purpose and of itself.
+
+    Parameters
+    ----------
+    content : bytes
+        What is kept.
+    purpose : str
+        What it is for: whatever must be the same where it is used.
+    """
+    return _digest(content, purpose) + content
+
+
+def remove_digest(stored: bytes, purpose: str) -> memoryview | None:
+    """Return the content of what `add_digest` made for a purpose; None if it is anything else."""
+    content = memoryview(stored)[_SIZE:]
+    return content if _digest(content, purpose) == stored[:_SIZE] else None
+
+
+def _digest(content: bytes | memoryview, purpose: str) -> bytes:
+    head = purpose.encode()
+    digest = hashlib.sha256(len(head).to_bytes(8, "little") + head)
+    digest.update(content)
+    return digest.digest()
