@@ -21,12 +21,12 @@ ALTITUDES = 30
 THIN_DEPTH = 2.0
 ALTITUDES_PER_DEPTH = 4.0
 MAX_ALTITUDES = 96
-"""Nodes of altitude, more of them where the air is thick: light between two nodes that lie an
+"""Nodes of altitude, more of them where the atmosphere is thick: light between two nodes that lie an
 optical depth apart is lost to interpolation, 6 % of it at depth 10 with no more than 24."""
 
 LAST_JUDGED = math.radians(110.0)
 LAST_JUDGED_THICK = math.radians(97.0)
-"""Solar zenith angles beyond which it is night, and where thick air settles very slowly. [rad]"""
+"""Solar zenith angles beyond which it is night, and where a thick atmosphere settles very slowly. [rad]"""
 
 UPWARD = 12
 DOWNWARD = 6
