@@ -114,7 +114,7 @@ def probe(
     wavelengths : ndarray, optional
         In any order; default the renderer's own. [nm]
     per_irradiance : bool, optional
-        Divide by the star's irradiance above the air, and leave out what is for eyes.
+        Divide by the star's irradiance above the atmosphere, and leave out what is for eyes.
     illuminance : bool, optional
         Repeat the illuminances by sun and sky in every row.
     method : {"full", "hillaire", "march", "reference"}, optional

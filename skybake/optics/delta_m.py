@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.optics.legendre import legendre_moments, legendre_polynomials, sum_series
-from skybake.optics.medium import Array, Medium
+from skybake.optics.medium import Array, Medium, vertical_columns
 from skybake.optics.phase import scattering_angles
 
 SERIES_ORDER = 400
@@ -81,9 +81,7 @@ def scale_medium(medium: Medium, order: int) -> ScaledMedium:
     (exact single scattering over a truncated field).
     """
     series = legendre_moments(medium.phase, SERIES_ORDER)
-    column = np.asarray(
-        np.trapezoid(medium.density, np.linspace(0.0, 1.0, medium.density.shape[0]) ** 2, axis=0)
-    )
+    column = vertical_columns(medium)
     fraction = np.maximum(series[:, order + 1], 0.0)
     is_peaked = (fraction.max(axis=1) > PEAKED) & (medium.scattering.max(axis=1) > 0.0)
     fraction[~is_peaked] = 0.0

@@ -22,7 +22,7 @@ _LEAST_SHARE = 0.01
 
 
 class _Haze(NamedTuple):
-    """Extinction of a planet's air, shared out to what can be changed.
+    """Extinction of a planet's atmosphere, shared out to what can be changed.
 
     `weights` are optical depths by the names of the aerosols that make the haze; with
     these `ground` and `column` are their extinction at the ground [km⁻¹] and their
@@ -80,7 +80,7 @@ def haze_for_visibility(planet: Planet, kilometres: float) -> dict[str, float]:
     Raises
     ------
     PresetError
-        If there is no such aerosol, or the air is too thick without it already.
+        If there is no such aerosol, or the atmosphere is too thick without it already.
     """
     haze = _haze(planet)
     needed = CONTRAST / kilometres - haze.ground_rest

@@ -1,1 +1,1 @@
-"""Tables that rays look up: each file holds one, with its mapping, build and lookup."""
+"""All orders of scattering: an atmosphere's tables, and the light that rays gather by them."""

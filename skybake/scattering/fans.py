@@ -29,8 +29,18 @@ class Fans(NamedTuple):
     starts: Array
 
 
-def group_rays(rays: Array) -> Fans:
-    """Find the fans among rays that are ordered by direction."""
+def group_rays(rays: Array, distances: Array | None = None) -> Fans:
+    """Find the fans among rays that are ordered by direction.
+
+    Parameters
+    ----------
+    rays : ndarray of float64, shape (ray, 4)
+        As `Fans` holds them.
+    distances : ndarray of float64, shape (ray, distance), optional
+        What the rays of a fan have to share too.
+    """
     is_new = np.any(rays[1:, :2] != rays[:-1, :2], axis=1)
+    if distances is not None:
+        is_new |= np.any(distances[1:] != distances[:-1], axis=1)
     first = np.concatenate([[0], np.flatnonzero(is_new) + 1, [len(rays)]]).astype(np.int64)
     return Fans(rays, first, np.ascontiguousarray(rays[first[:-1], :2]))

@@ -21,18 +21,19 @@ ALTITUDES = 30
 THIN_DEPTH = 2.0
 ALTITUDES_PER_DEPTH = 4.0
 MAX_ALTITUDES = 96
-"""Nodes of altitude, more of them where the air is thick: light between two nodes that lie an
+"""Nodes of altitude, more of them in a thick atmosphere: light between two nodes that lie an
 optical depth apart is lost to interpolation, 6 % of it at depth 10 with no more than 24."""
 
 LAST_JUDGED = math.radians(110.0)
 LAST_JUDGED_THICK = math.radians(97.0)
-"""Solar zenith angles beyond which it is night, and where thick air settles very slowly. [rad]"""
+"""Solar zenith angles beyond which it is night, and, if the atmosphere is thick, beyond which
+light settles very slowly. [rad]"""
 
 UPWARD = 12
 DOWNWARD = 6
 
 # Spacing of the sun's zenith angles: fine where the planet's shadow passes through
-# the air, and not too wide at the zenith, near which moments go as sin(angle)**m.
+# the atmosphere, and not too wide at the zenith, near which moments go as sin(angle)**m.
 _SPACING_AT = (0.0, 50.0, 75.0, 86.0, 90.0, 104.0, 112.0, 125.0, 180.0)
 _SPACING = (10.0, 8.0, 5.0, 1.6, 0.8, 0.8, 1.0, 4.0, 10.0)
 

@@ -1,4 +1,4 @@
-"""Light that the air along rays scatters out of the diffuse field, or the ground reflects."""
+"""Light that rays bring out of the diffuse field, by scattering or from the ground."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from skybake.scattering.harmonics import fill_harmonics
 from skybake.transport.geometry import radius_at
 
 NEGLIGIBLE = 3e-4
-"""Share of a ray's scattering below which an order l of a sample is left out."""
+"""Share of a ray's scattering below which a sky leaves out an order l of a sample."""
 
 
 class Scratch(NamedTuple):
@@ -83,7 +83,7 @@ def side_by_side(field: DiffuseField) -> npt.NDArray[np.float32]:
 
 
 @kernel
-def add_diffuse(field, radiance, medium, fans, begin, end, samples, scratch, out):
+def add_diffuse(field, radiance, medium, negligible_share, fans, begin, end, samples, scratch, out):
     """Add the light that rays bring out of the diffuse field.
 
     Parameters
@@ -94,6 +94,8 @@ def add_diffuse(field, radiance, medium, fans, begin, end, samples, scratch, out
         Its moments once more, from `side_by_side`.
     medium : Medium
         The atmosphere.
+    negligible_share : float
+        Share of what a fan's samples scatter below which an order l of one is left out.
     fans : Fans
         The rays.
     begin, end, samples
@@ -121,7 +123,7 @@ def add_diffuse(field, radiance, medium, fans, begin, end, samples, scratch, out
         negligible[:] = 0.0
         for n in range(first, last):
             for c in range(field.source.shape[0]):
-                density = NEGLIGIBLE * samples.density[n, c]
+                density = negligible_share * samples.density[n, c]
                 for k in range(wavelengths):
                     negligible[k] += density * field.source[c, 0, k] * samples.weight[n, k]
         # The field is smooth within a step, so that its two samples share a lookup where

@@ -7,16 +7,16 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from skybake.jit.arguments import flatten
+from skybake.jit.arguments import Flat, flatten
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.delta_m import PEAK_NODES
 from skybake.optics.medium import Array
-from skybake.scattering.fans import group_rays
-from skybake.scattering.multiple import add_diffuse, allocate_scratch, side_by_side
+from skybake.scattering.fans import Fans, group_rays
+from skybake.scattering.multiple import NEGLIGIBLE, add_diffuse, allocate_scratch, side_by_side
 from skybake.scattering.single import add_single_scattering
 from skybake.scattering.sunlit import allocate_sunlit
 from skybake.scattering.tables import Atmosphere
-from skybake.transport.samples import allocate_samples
+from skybake.transport.samples import Samples, allocate_samples
 from skybake.transport.trace import MAX_ARC, trace
 
 LEAST_FANS = 3
@@ -75,32 +75,77 @@ def trace_rays(
     Neighbours with the same r and mu share samples, so rays are best ordered by
     direction first.
     """
-    scaled, field = atmosphere.scaled, atmosphere.field
+    scaled = atmosphere.scaled
     phases, _, wavelengths = scaled.phase.shape
     single = np.zeros((r.size, phases, wavelengths))
     diffuse = np.zeros((r.size, wavelengths), np.float32)
     fans = group_rays(np.stack([r, mu, mu_s, nu], axis=1))
-
-    # A field on less than two altitudes is none.
-    has_field = field.altitude.size > 1
-    starts, light = flatten(fans.starts), flatten(diffuse)
-    sources = [flatten(each) for each in (scaled, PEAK_NODES, atmosphere.columns)]
-    medium, bundle, scattered = map(flatten, (scaled.medium, fans, single))
-    moments = flatten(field), flatten(side_by_side(field))
+    light = LightOfFans(atmosphere, fans, single, diffuse)
+    medium, starts = flatten(scaled.medium), flatten(fans.starts)
 
     def work(begin: int, end: int) -> None:
-        work_space = allocate_samples(scaled.medium)
-        samples = flatten(work_space)
-        scratch = flatten(allocate_scratch(field, fans)) if has_field else None
+        samples = allocate_samples(scaled.medium)
+        filled, scratch = flatten(samples), light.allocate()
         while begin < end:
-            stop = trace(medium, atmosphere.shells, max_arc, starts, begin, end, samples)
-            batch = bundle, begin, stop, samples
-            sunlit = allocate_sunlit(scaled.medium, int(work_space.number[: stop - begin].max()))
-            add_single_scattering(*sources, *batch, sunlit, scattered, light)
-            if has_field:
-                add_diffuse(*moments, medium, *batch, scratch, light)
+            stop = trace(medium, atmosphere.shells, max_arc, starts, begin, end, filled)
+            light.add(begin, stop, samples, filled, scratch)
             begin = stop
 
-    chunk = max(LEAST_FANS, len(fans.starts) // workers.shares(32))
-    workers.run_rows(len(fans.starts), work, chunk=chunk)
+    workers.run_rows(len(fans.starts), work, chunk=chunk_of_fans(len(fans.starts), workers))
     return RayLight(single, diffuse)
+
+
+def chunk_of_fans(fans: int, workers: Workers) -> int:
+    """Fans that a thread takes at a time."""
+    return max(LEAST_FANS, fans // workers.shares(32))
+
+
+class LightOfFans:
+    """Adds the light along fans that are traced to what it has been given, from any thread.
+
+    Parameters
+    ----------
+    atmosphere : Atmosphere
+        What the fans pass through.
+    fans : Fans
+        The rays.
+    single : ndarray of float64, shape (ray, phase function, wavelength)
+        Receives light as of `RayLight`.
+    diffuse : ndarray of float32, shape (ray, wavelength)
+        Receives light as of `RayLight`.
+    negligible_share : float, optional
+        As of `add_diffuse`.
+    """
+
+    def __init__(
+        self,
+        atmosphere: Atmosphere,
+        fans: Fans,
+        single: Array,
+        diffuse: npt.NDArray[np.float32],
+        negligible_share: float = NEGLIGIBLE,
+    ) -> None:
+        scaled, field = atmosphere.scaled, atmosphere.field
+        self._medium, self._field, self._fans = scaled.medium, field, fans
+        # A field on less than two altitudes is none.
+        self._has_field = field.altitude.size > 1
+        self._sources = [flatten(each) for each in (scaled, PEAK_NODES, atmosphere.columns)]
+        self._moments = [flatten(each) for each in (field, side_by_side(field), scaled.medium)]
+        self._negligible_share = negligible_share
+        self._rays, self._single, self._diffuse = map(flatten, (fans, single, diffuse))
+
+    def allocate(self) -> Flat | None:
+        """Make the work space that a thread needs for `add`."""
+        return flatten(allocate_scratch(self._field, self._fans)) if self._has_field else None
+
+    def add(
+        self, begin: int, end: int, samples: Samples, filled: Flat, scratch: Flat | None
+    ) -> None:
+        """Add the light of fans `begin` to `end`, whose samples are given twice."""
+        batch = self._rays, begin, end, filled
+        most = int(samples.number[: end - begin].max())
+        sunlit = allocate_sunlit(self._medium, most)
+        add_single_scattering(*self._sources, *batch, sunlit, self._single, self._diffuse)
+        if self._has_field:
+            share = self._negligible_share
+            add_diffuse(*self._moments, share, *batch, scratch, self._diffuse)

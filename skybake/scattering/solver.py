@@ -27,7 +27,7 @@ from skybake.scattering.grid import (
     project,
     thickest_depth,
 )
-from skybake.scattering.multiple import add_diffuse, allocate_scratch, side_by_side
+from skybake.scattering.multiple import NEGLIGIBLE, add_diffuse, allocate_scratch, side_by_side
 from skybake.scattering.ray import trace_rays
 from skybake.scattering.tables import Atmosphere
 from skybake.transport.samples import allocate_samples
@@ -267,7 +267,7 @@ def _scatter(
         for batch in batches[first:last]:
             scratch = allocate_scratch(field, batch.fans.value)
             rays = batch.fans, batch.begin, batch.end, batch.samples
-            add_diffuse(*light, *rays, scratch, out[batch.node])
+            add_diffuse(*light, NEGLIGIBLE, *rays, scratch, out[batch.node])
 
     workers.run_rows(len(batches), work)
     scattered = field._replace(

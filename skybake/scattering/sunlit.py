@@ -88,8 +88,8 @@ def gather_sunlit(medium, columns, ray, samples, first, last, length, out):
     Notes
     -----
     Within a step that is cut, transmittance to the observer is taken as linear: the
-    air would have to be thick for that to show, and then no light comes by the planet's
-    edge. Density may fall to a third within a step of thin air and is looked up.
+    atmosphere would have to be thick for that to show, and then no light comes by the planet's
+    edge. Density may fall to a third within a step high up and is looked up.
     """
     r, mu, mu_s, nu = ray[0], ray[1], ray[2], ray[3]
     dark_first, dark_last = shadow_interval(r, mu, mu_s, nu, medium.r_bottom, 0.0, length)

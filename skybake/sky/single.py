@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from skybake.errors import InputError
 from skybake.optics.medium import Array
 from skybake.optics.phase_basis import PhaseBasis, build_phase_basis
 from skybake.reference.single import trace_single
 from skybake.scattering.ray import RayLight
-from skybake.sky.skylight import Skylight
+from skybake.sky.skylight import Segments, Skylight
 from skybake.sky.source import Source
 
 STEPS = 128
@@ -30,6 +31,17 @@ class SingleSkylight(Skylight):
     def basis(self) -> PhaseBasis:
         """Curves that the phase functions are sums of."""
         return build_phase_basis(self.phase, [[c] for c in range(len(self.phase))])
+
+    def segments(self, directions: Array, distances: Array) -> Segments:
+        """Refuse: only tables tell the light up to a distance.
+
+        Raises
+        ------
+        InputError
+            Always.
+        """
+        del directions, distances
+        raise InputError("segments: must be asked of all orders of scattering, got the first alone")
 
     def _light(self, source: Source, mu: Array, nu: Array) -> RayLight:
         rays = self._rays(source, mu, nu)

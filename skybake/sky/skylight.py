@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,10 +13,26 @@ from skybake.optics.medium import Array
 from skybake.optics.phase import eval_phase
 from skybake.optics.phase_basis import PhaseBasis
 from skybake.scattering.ray import RayLight, trace_rays
+from skybake.scattering.segments import trace_segments
 from skybake.scattering.tables import Atmosphere
 from skybake.sky.observer import Observer
 from skybake.sky.source import Source
 from skybake.sky.spectral_table import SpectralTable, table_geometry
+
+
+class Segments(NamedTuple):
+    """Light between an observer and places at several distances.
+
+    Attributes
+    ----------
+    radiance : ndarray of float64, shape (..., distance, wavelength)
+        Gathered up to there. [W m⁻² sr⁻¹ nm⁻¹]
+    transmittance : ndarray of float64, shape (..., distance, wavelength)
+        Of light from there to the observer, see `SegmentLight`.
+    """
+
+    radiance: Array
+    transmittance: Array
 
 
 class Skylight:
@@ -100,6 +117,45 @@ class Skylight:
         phase = eval_phase(self.phase, nu.ravel())
         radiance: Array = (light.single * phase).sum(axis=1) + light.diffuse
         return radiance.reshape(*mu.shape, -1)
+
+    def segments(self, directions: Array, distances: Array) -> Segments:
+        """Light gathered up to given distances, by all sources.
+
+        Parameters
+        ----------
+        directions : array_like, shape (..., 3)
+            As of `radiance`.
+        distances : array_like, shape (distance,) or (..., distance)
+            From the observer, ascending; may be infinite. [km]
+
+        Returns
+        -------
+        Segments
+            What is gathered, and what passes of the light behind. The ground counts as
+            behind, but for distances beyond it.
+
+        Raises
+        ------
+        InputError
+            If a direction or a distance is none.
+        """
+        unit = unit_directions(directions)
+        medium = self.atmosphere.medium
+        count, shape = medium.ground_albedo.size, unit.shape[:-1]
+        unit = unit.reshape(-1, 3)
+        ends = np.asarray(distances, dtype=float)
+        ends = np.broadcast_to(ends, (*shape, ends.shape[-1])).reshape(len(unit), -1)
+        radiance, transmittance = np.zeros((*ends.shape, count)), np.ones((*ends.shape, count))
+        for source in self.sources:
+            nu = np.clip(unit @ source.direction, -1.0, 1.0)
+            rays = self._rays(source, unit[:, 1], nu)
+            light = trace_segments(self.atmosphere, *rays, ends, workers=self.workers)
+            phase = eval_phase(self.phase, nu)[:, None]
+            one = (light.single[..., :count] * phase).sum(axis=2) + light.diffuse[..., :count]
+            radiance += one * source.irradiance
+            transmittance = light.transmittance[..., :count]
+        shape = *shape, ends.shape[-1], count
+        return Segments(radiance.reshape(shape), transmittance.reshape(shape))
 
     def spectral_table(self, source: Source) -> SpectralTable:
         """Trace the rays by which pixels know the light of one source."""

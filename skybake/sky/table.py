@@ -56,13 +56,13 @@ class FoldedTable(NamedTuple):
         Zenith angle at which the atmosphere begins: 0 inside it, beyond 0 from space. [rad]
     zenith_horizon : float
         Zenith angle of the planet's horizon. [rad]
-    sun_zenith : float
-        Zenith angle of the sun. [rad]
-    table : ndarray of float32, shape (2, latitude, azimuth * 3 * lobe)
-        Above the horizon and below it; azimuths of `table_directions`, from the sun's
-        to the opposite one; channels are R, G and B with all lobes each.
-    curves : ndarray of float32, shape (SCATTERING_ANGLES, lobe)
-        PhaseBasis over the scattering angle.
+    source_zenith : float
+        Zenith angle of the source. [rad]
+    values : ndarray of float32, shape (2, latitude, azimuth * 3 * curve)
+        Above the horizon and below it; azimuths of `table_directions`, from the source's
+        to the opposite one; R, G and B, each with a value for every curve.
+    curves : ndarray of float32, shape (SCATTERING_ANGLES, curve)
+        The basis of phase functions over the scattering angle.
     """
 
     zenith_first: float

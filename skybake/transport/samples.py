@@ -58,8 +58,8 @@ class Samples(NamedTuple):
     column: Array
 
 
-def allocate_samples(medium: Medium) -> Samples:
-    """Make the work space for rays through `medium`; each thread needs its own."""
+def allocate_samples(medium: Medium, rays: int = BATCH_RAYS) -> Samples:
+    """Make the work space for so many rays through `medium`; each thread needs its own."""
     constituents, wavelengths = medium.extinction.shape
     return Samples(
         distance=np.empty(BATCH_SAMPLES),
@@ -67,10 +67,10 @@ def allocate_samples(medium: Medium) -> Samples:
         density=np.empty((BATCH_SAMPLES, constituents)),
         column_to=np.empty((BATCH_SAMPLES, constituents)),
         weight=np.empty((BATCH_SAMPLES, wavelengths)),
-        first=np.empty(BATCH_RAYS, np.int64),
-        number=np.empty(BATCH_RAYS, np.int64),
-        length=np.empty(BATCH_RAYS),
-        hits_ground=np.empty(BATCH_RAYS, np.bool_),
-        transmittance=np.empty((BATCH_RAYS, wavelengths)),
-        column=np.empty((BATCH_RAYS, constituents)),
+        first=np.empty(rays, np.int64),
+        number=np.empty(rays, np.int64),
+        length=np.empty(rays),
+        hits_ground=np.empty(rays, np.bool_),
+        transmittance=np.empty((rays, wavelengths)),
+        column=np.empty((rays, constituents)),
     )

@@ -86,22 +86,98 @@ def trace(medium, shells, max_arc, rays, begin, end, samples):
 
 
 @kernel
+def trace_spans(medium, shells, max_arc, rays, distances, begin, end, samples):
+    """Fill `samples` along as many rays as it holds, with steps that end at given distances.
+
+    Parameters
+    ----------
+    distances : ndarray of float64, shape (ray, distance)
+        Ascending along each ray. [km]
+    others
+        As of `trace`; `samples` has room for a ray's distances at least.
+
+    Returns
+    -------
+    int
+        The first ray that is left for the next batch, or `end`.
+
+    Notes
+    -----
+    What `samples` holds of rays it holds here of spans between distances, the spans of a
+    ray one after another: their own samples, and transmittance and columns from the ray's
+    start to the span's end. The span that goes on beyond the ground is the one that hits it.
+    """
+    capacity, number = samples.distance.size, distances.shape[1]
+    used = np.int64(0)
+    i = begin
+    while (
+        i < end
+        and (i - begin + 1) * number <= samples.first.size
+        and used + MAX_SAMPLES <= capacity
+    ):
+        used = _trace_spans_of_ray(
+            medium, shells, max_arc, rays[i], distances[i], used, (i - begin) * number, samples
+        )
+        i += 1
+    return i
+
+
+@kernel
 def _trace_ray(medium, shells, max_arc, start, first, ray, samples):
     """Append the samples of one ray from `first` on; returns the next free one."""
-    r, mu = start[0], start[1]
-    t, t_last, samples.hits_ground[ray] = ray_limits(medium, r, mu)
+    t, t_last, samples.hits_ground[ray] = ray_limits(medium, start[0], start[1])
     samples.length[ray] = t_last
     transmittance, column = samples.transmittance[ray], samples.column[ray]
     for k in range(transmittance.size):
         transmittance[k] = 1.0
     for c in range(column.size):
         column[c] = 0.0
+    return _extend(
+        medium, shells, max_arc, start, t, t_last, first, first, samples, transmittance, column
+    )
+
+
+@kernel
+def _trace_spans_of_ray(medium, shells, max_arc, start, distances, first, slot, samples):
+    """Append the samples of one ray's spans from `first` on; returns the next free one."""
+    t, t_last, hits_ground = ray_limits(medium, start[0], start[1])
+    n = first
+    for j in range(distances.size):
+        transmittance, column = samples.transmittance[slot + j], samples.column[slot + j]
+        for k in range(transmittance.size):
+            transmittance[k] = 1.0 if j == 0 else samples.transmittance[slot + j - 1, k]
+        for c in range(column.size):
+            column[c] = 0.0 if j == 0 else samples.column[slot + j - 1, c]
+        samples.first[slot + j] = n
+        stop = min(distances[j], t_last)
+        if stop > t:
+            n = _extend(
+                medium, shells, max_arc, start, t, stop, first, n, samples, transmittance, column
+            )
+            t = stop
+        samples.number[slot + j] = n - samples.first[slot + j]
+        samples.length[slot + j] = t_last
+        is_seen = distances[j] > t_last and (j == 0 or distances[j - 1] <= t_last)
+        samples.hits_ground[slot + j] = hits_ground and is_seen
+    return n
+
+
+@kernel
+def _extend(medium, shells, max_arc, start, t, t_last, first, n, samples, transmittance, column):
+    """Append a ray's samples between two distances from `n` on; returns the next free one.
+
+    The ray's own begin at `first`; transmittance and columns are those up to `t`, and then
+    those up to `t_last`.
+    """
+    r, mu = start[0], start[1]
     t_closest = -r * mu
     closest_squared = squared_closest_approach(r, mu)
     layer = _layer_at(shells, radius_at(r, mu, t) - medium.r_bottom, t < t_closest)
     arc = max_arc * medium.r_bottom
-    n = first
-    while t < t_last and n + 2 <= first + MAX_SAMPLES:
+    brightest = 0.0
+    for k in range(transmittance.size):
+        brightest = max(brightest, transmittance[k])
+    while t < t_last and brightest >= OPAQUE and n + 2 <= first + MAX_SAMPLES:
         descending = t < t_closest
         t_shell, next_layer = _next_shell(
             shells, layer, descending, medium.r_bottom, t_closest, closest_squared
@@ -115,8 +191,6 @@ def _trace_ray(medium, shells, max_arc, start, first, ray, samples):
         if t_next >= t_shell:
             layer = next_layer
         t = t_next
-        if brightest < OPAQUE:
-            break
     return n
 
 

@@ -13,37 +13,37 @@ def phase_of(preset):
 
 
 @pytest.mark.parametrize("preset", ["earth", "mars"])
-def test_lobes_restore_each_phase_function(preset):
+def test_a_basis_restores_each_phase_function(preset):
     phase = phase_of(preset)
-    lobes = build_phase_basis(phase, [[c] for c in range(len(phase))])
-    restored = np.einsum("cwq,qa->caw", lobes.weights, lobes.curves)
+    basis = build_phase_basis(phase, [[c] for c in range(len(phase))])
+    restored = np.einsum("cwq,qa->caw", basis.weights, basis.curves)
     rms = np.sqrt(np.mean(phase**2, axis=2, keepdims=True))
     assert (np.abs(restored - phase) / rms).max() <= TOLERANCE * (1.0 + 1e-9)
 
 
-def test_an_asymmetry_that_varies_with_wavelength_needs_few_lobes():
-    lobes = build_phase_basis(phase_of("earth"), [[0], [1], [2]])
-    assert lobes.curves.shape[0] <= 8
+def test_an_asymmetry_that_varies_with_wavelength_needs_few_curves():
+    basis = build_phase_basis(phase_of("earth"), [[0], [1], [2]])
+    assert basis.curves.shape[0] <= 8
 
 
-def test_first_lobe_is_one_for_light_without_a_phase_function():
-    lobes = build_phase_basis(phase_of("mars"), [[0], [1]])
-    np.testing.assert_array_equal(lobes.curves[0], 1.0)
+def test_first_curve_is_one_for_light_without_a_phase_function():
+    basis = build_phase_basis(phase_of("mars"), [[0], [1]])
+    np.testing.assert_array_equal(basis.curves[0], 1.0)
 
 
-def test_isotropic_scattering_needs_no_lobe_of_its_own():
+def test_isotropic_scattering_needs_no_curve_of_its_own():
     isotropic = np.full((1, scattering_angles().size, 4), 0.25 / np.pi)
-    lobes = build_phase_basis(isotropic, [[0]])
-    assert lobes.curves.shape[0] <= 2
-    restored = np.einsum("cwq,qa->caw", lobes.weights, lobes.curves)
+    basis = build_phase_basis(isotropic, [[0]])
+    assert basis.curves.shape[0] <= 2
+    restored = np.einsum("cwq,qa->caw", basis.weights, basis.curves)
     np.testing.assert_allclose(restored, isotropic, rtol=2e-3)
 
 
-def test_lobes_that_fill_up_a_vector_change_nothing():
+def test_curves_that_fill_up_a_vector_change_nothing():
     phase = phase_of("mars")
-    lobes = build_phase_basis(phase, [[0], [1]])
-    padded = pad_basis(lobes)
+    basis = build_phase_basis(phase, [[0], [1]])
+    padded = pad_basis(basis)
     assert len(padded.curves) % LANES == padded.weights.shape[2] % LANES == 0
     np.testing.assert_allclose(
-        padded.weights @ padded.curves, lobes.weights @ lobes.curves, rtol=1e-13
+        padded.weights @ padded.curves, basis.weights @ basis.curves, rtol=1e-13
     )
