@@ -34,7 +34,7 @@ from skybake.errors import SkybakeError
 if TYPE_CHECKING:
     from skybake.sequence.plan import Plan
     from skybake.sequence.products import Products
-    from skybake.sequence.run import Result
+    from skybake.sequence.run import SequenceResult
 
 SOME_FAILED = 3
 
@@ -216,7 +216,7 @@ def _plan_from_options(context: click.Context) -> Plan:
         )
 
 
-def _bake(plan: Plan, part: Plan, products: Products, options: Mapping[str, Any]) -> Result:
+def _bake(plan: Plan, part: Plan, products: Products, options: Mapping[str, Any]) -> SequenceResult:
     from skybake.baking import companion
     from skybake.sequence.bake import check_sequence, frame_pool
     from skybake.sequence.run import bake_frames
@@ -243,7 +243,7 @@ def _bake(plan: Plan, part: Plan, products: Products, options: Mapping[str, Any]
         return bake_frames(part, run, retries=options["retry"], tell=tell)
 
 
-def _write_products(products: Products, result: Result) -> list[Path]:
+def _write_products(products: Products, result: SequenceResult) -> list[Path]:
     """Write them; where frames failed, their failure stays the one that counts."""
     try:
         return products.write(result)

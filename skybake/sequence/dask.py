@@ -15,7 +15,7 @@ from skybake.jit.workers import Workers
 from skybake.optics.medium import Medium
 from skybake.preset import Planet
 from skybake.scattering.atmosphere import adopt_atmosphere, atmosphere_content
-from skybake.sequence.frame import Outcome, PreviewSettings, finish_frame
+from skybake.sequence.frame import FrameOutcome, PreviewSettings, finish_frame
 from skybake.sequence.plan import Frame, Plan
 from skybake.sequence.pool import Done, Run
 from skybake.sky.sky import Sky
@@ -108,7 +108,7 @@ def dask_pool(
 
 def finish_on_worker(
     frame: Frame, planet: Planet, tables: Tables, previews: PreviewSettings, *, skip_existing: bool
-) -> Outcome:
+) -> FrameOutcome:
     """Bake a frame on a worker, with tables that came from afar."""
     if tables is not None:
         adopt_atmosphere(*tables)
@@ -156,10 +156,10 @@ def _absolute(frame: Frame) -> Any:
     return None if frame.preview is None else frame.preview.absolute()
 
 
-def _outcome(future: Any) -> Outcome | Exception:
+def _outcome(future: Any) -> FrameOutcome | Exception:
     """Return the result of a future, or why there is none."""
     if future.status == "finished":
-        outcome: Outcome = future.result()
+        outcome: FrameOutcome = future.result()
         return outcome
     if future.status == "error":
         error: Exception = future.exception()

@@ -8,10 +8,10 @@ from concurrent.futures import Future, ThreadPoolExecutor, as_completed, wait
 from contextlib import contextmanager
 
 from skybake.jit.workers import Workers, cpu_count
-from skybake.sequence.frame import Outcome, PreviewSettings, finish_frame
+from skybake.sequence.frame import FrameOutcome, PreviewSettings, finish_frame
 from skybake.sequence.plan import Frame, Plan
 
-Done = tuple[Frame, Outcome | Exception]
+Done = tuple[Frame, FrameOutcome | Exception]
 Run = Callable[[Sequence[Frame]], Iterator[Done]]
 """Bakes frames and yields each when it is done or has failed, in any order."""
 
@@ -49,7 +49,7 @@ def local_pool(
     threads = ThreadPoolExecutor(workers)
     # Where several frames are baked at once, each keeps to its own thread.
     of_a_frame = Workers(None if workers == 1 else 1, stop)
-    pending: dict[Future[Outcome], Frame] = {}
+    pending: dict[Future[FrameOutcome], Frame] = {}
 
     def run(frames: Sequence[Frame]) -> Iterator[Done]:
         pending.clear()
