@@ -71,8 +71,8 @@ def dask_pool(
         client = Client(address, timeout=CONNECT_WITHIN, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:
         raise InputError(
-            f"dask: a scheduler must answer at {address} within {CONNECT_WITHIN} s, "
-            f"got {_one_line(error)}"
+            f"dask: no scheduler has answered at {address} within {CONNECT_WITHIN} s "
+            f"({_one_line(error)})"
         ) from error
     futures: dict[Any, Frame] = {}
     try:
@@ -126,9 +126,7 @@ def _check_workers(client: Any, address: str) -> None:
     try:
         client.wait_for_workers(1, timeout=WORKER_WITHIN)
     except TimeoutError as error:
-        raise InputError(
-            f"dask: {address} must have a worker within {WORKER_WITHIN} s, got none"
-        ) from error
+        raise InputError(f"dask: {address} has had no worker within {WORKER_WITHIN} s") from error
     ours = versions()
     for worker, theirs in client.run(versions, on_error="return").items():
         if isinstance(theirs, Exception):
@@ -164,7 +162,7 @@ def _outcome(future: Any) -> FrameOutcome | Exception:
     if future.status == "error":
         error: Exception = future.exception()
         return error
-    return InputError(f"dask: a frame must come back, got {future.status}")
+    return InputError(f"dask: a frame has not come back ({future.status})")
 
 
 def _one_line(error: BaseException) -> str:

@@ -73,7 +73,9 @@ class Products:
         curve = None if self.plan.exposure_curve is None else self.plan.exposure_curve.path
         for path in self.manifests:
             if curve is not None and path.resolve() == curve.resolve():
-                raise OutputError(f"{path}: must not be the exposure curve, which is read")
+                raise OutputError(
+                    f"{path}: cannot be written, because the exposure curve is read from it"
+                )
             if path.suffix.lower() == ".usda":
                 maps = (_seen_from(path.parent, frame.output) for frame in self.plan.frames)
                 check_usd(path, _header(self).projection, maps)
