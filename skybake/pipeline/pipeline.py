@@ -39,7 +39,7 @@ class Pipeline:
     """
 
     def __init__(self, *, workers: Workers = ALL_CPUS, keep: int = KEPT) -> None:
-        self._workers = workers
+        self.workers = workers
         self._stages = KeptStages(keep)
 
     def scene(
@@ -62,7 +62,7 @@ class Pipeline:
             If the preset or a setting cannot be used.
         """
         planet = preset if isinstance(preset, Planet) else load_preset(preset)
-        workers = self._workers if cancel is None else self._workers.with_cancel(cancel)
+        workers = self.workers if cancel is None else self.workers.with_cancel(cancel)
         return Scene(planet, settings, workers, self._stages)
 
     def image(

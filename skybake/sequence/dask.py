@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import logging
 import platform
 from collections.abc import Iterator, Sequence
@@ -13,6 +14,7 @@ from typing import Any
 from skybake.errors import InputError
 from skybake.jit.workers import Workers
 from skybake.optics.medium import Medium
+from skybake.pipeline import Pipeline
 from skybake.preset import Planet
 from skybake.scattering.atmosphere import adopt_atmosphere, atmosphere_content
 from skybake.sequence.frame import FrameOutcome, PreviewSettings, finish_frame
@@ -112,7 +114,13 @@ def finish_on_worker(
     """Bake a frame on a worker, with tables that came from afar."""
     if tables is not None:
         adopt_atmosphere(*tables)
-    return finish_frame(frame, planet, previews, Workers(1), skip_existing=skip_existing)
+    return finish_frame(frame, planet, previews, _pipeline(), skip_existing=skip_existing)
+
+
+@functools.cache
+def _pipeline() -> Pipeline:
+    """Pipeline of this process, whose threads are the cluster's."""
+    return Pipeline(workers=Workers(1))
 
 
 def versions() -> dict[str, str]:

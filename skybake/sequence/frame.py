@@ -22,7 +22,7 @@ from skybake.image.light import Light, attributes_from_light, light_from_attribu
 from skybake.image.picture import scene_ev, thumbnail
 from skybake.image.recipe import HASH_ATTRIBUTE, preview_texts, recipe_hash
 from skybake.image.scene import Scene
-from skybake.jit.workers import ALL_CPUS, Workers
+from skybake.pipeline import Pipeline
 from skybake.preset import Planet
 from skybake.sequence.plan import Frame
 
@@ -84,7 +84,7 @@ def finish_frame(
     frame: Frame,
     planet: Planet,
     previews: PreviewSettings,
-    workers: Workers = ALL_CPUS,
+    pipeline: Pipeline,
     *,
     skip_existing: bool = False,
 ) -> FrameOutcome:
@@ -96,8 +96,8 @@ def finish_frame(
         What to bake.
     previews : PreviewSettings
         What to show.
-    workers : Workers, optional
-        Who does the work.
+    pipeline : Pipeline
+        What keeps that of one frame which serves the next.
     skip_existing : bool, optional
         Leave the frame alone if its files are whole and of the same recipe.
 
@@ -106,12 +106,12 @@ def finish_frame(
     SkybakeError
         As `skybake.baking.bake`.
     CancelledError
-        If the workers were stopped; no file is left then.
+        If the pipeline's workers were stopped; no file is left then.
     """
-    work = _Work(frame, planet, previews, workers)
+    work = _Work(frame, planet, previews, pipeline)
     light = work.found_light() if skip_existing else None
     is_new = light is None
-    workers.check()
+    pipeline.workers.check()
     files = map_paths(frame.output, frame.settings)
     if light is None:
         baked = bake_scene(
@@ -142,13 +142,18 @@ class _Work:
     """A frame's scene, made when it is needed."""
 
     def __init__(
-        self, frame: Frame, planet: Planet, previews: PreviewSettings, workers: Workers
+        self, frame: Frame, planet: Planet, previews: PreviewSettings, pipeline: Pipeline
     ) -> None:
-        self._frame, self._planet, self._previews, self._workers = frame, planet, previews, workers
+        self._frame, self._planet, self._previews, self._pipeline = (
+            frame,
+            planet,
+            previews,
+            pipeline,
+        )
 
     @cached_property
     def scene(self) -> Scene:
-        return Scene(self._planet, self._frame.settings, self._workers)
+        return self._pipeline.scene(self._planet, self._frame.settings)
 
     @cached_property
     def ev(self) -> float:

@@ -8,6 +8,7 @@ from concurrent.futures import Future, ThreadPoolExecutor, as_completed, wait
 from contextlib import contextmanager
 
 from skybake.jit.workers import Workers, cpu_count
+from skybake.pipeline import Pipeline
 from skybake.sequence.frame import FrameOutcome, PreviewSettings, finish_frame
 from skybake.sequence.plan import Frame, Plan
 
@@ -48,7 +49,7 @@ def local_pool(
     stop = threading.Event()
     threads = ThreadPoolExecutor(workers)
     # Where several frames are baked at once, each keeps to its own thread.
-    of_a_frame = Workers(None if workers == 1 else 1, stop)
+    pipeline = Pipeline(workers=Workers(None if workers == 1 else 1, stop), keep=workers)
     pending: dict[Future[FrameOutcome], Frame] = {}
 
     def run(frames: Sequence[Frame]) -> Iterator[Done]:
@@ -59,7 +60,7 @@ def local_pool(
                 frame,
                 plan.planet(frame),
                 previews,
-                of_a_frame,
+                pipeline,
                 skip_existing=skip_existing,
             )
             pending[future] = frame
