@@ -80,15 +80,15 @@ class _CommandLine(click.Group):
             except _EndedError as error:
                 status, told_to_end = _fail("terminated", ENDED_BY_SIGNAL + error.args[0]), True
             except MemoryError:
-                status = _fail(f"memory: must be more, got {memory_text()}", FAILED)
+                status = _fail(f"memory: too little for this task ({memory_text()})", FAILED)
             except RuntimeError as error:
                 if str(error) != _NO_THREAD:
                     raise
-                limits = "too little memory or too few processes"
-                status = _fail(f"threads: must be able to start, got {limits}", FAILED)
+                limits = "too little memory, or too few processes allowed"
+                status = _fail(f"threads: none can be started ({limits})", FAILED)
             except OSError as error:
                 # What knows a file names it; this is a full disk below standard output.
-                status = _fail(f"must be able to write, got {error.strerror or error}", FAILED)
+                status = _fail(f"output: cannot be written ({error.strerror or error})", FAILED)
         if told_to_end:
             # Only now is the exception gone, and with it what it kept from its clean-up.
             _exit_now(status)

@@ -61,7 +61,7 @@ class ArgumentError(InputError):
     ----------
     problem : str
         The message, with names of arguments in braces, as
-        ``{latitude}: needs {longitude} beside it``.
+        ``{latitude}: needs {longitude} as well``.
     **values : object
         What else stands in braces.
     """

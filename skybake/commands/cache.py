@@ -22,16 +22,17 @@ _MEGABYTE = 1e6
 
 @click.group()
 def cache() -> None:
-    """Show, empty or fill the folder of compiled kernels and solved atmospheres."""
+    """Show, clear or fill the folder of compiled kernels and solved atmospheres."""
 
 
 @cache.command()
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def info(as_json: bool) -> None:
-    """Print where the cache lies and what each version has in it.
+    """Print where the cache is and what each version keeps in it.
 
-    SKYBAKE_CACHE_DIR names another place than the user's cache folder. Folders that were not used
-    for 30 days go when a new version makes its own; of atmospheres the oldest go beyond 1 GB.
+    SKYBAKE_CACHE_DIR names another place than the user's cache folder. Folders that have not been
+    used for 30 days are removed when a new version creates its own, and the oldest atmospheres when
+    all of them exceed 1 GB.
     """
     from skybake.jit.cache import cache_root, cache_usage, version_directory
 
@@ -55,7 +56,7 @@ def info(as_json: bool) -> None:
 def clear() -> None:
     """Remove kernels and atmospheres of all versions.
 
-    Other files in the folder stay.
+    Other files in the folder are left alone.
     """
     from skybake.jit.cache import cache_usage, clear_cache
 
@@ -63,7 +64,7 @@ def clear() -> None:
     clear_cache()
     left = cache_usage()
     if left:
-        raise OutputError(f"{left[0].folder}: must be removable, got {_size(left)} that stay")
+        raise OutputError(f"{left[0].folder}: cannot be removed ({_size(left)} remain)")
     click.echo(f"{_size(before)} freed")
 
 
@@ -75,16 +76,16 @@ def clear() -> None:
     multiple=True,
     default=("earth",),
     show_default=True,
-    help="World whose atmosphere is solved ahead; may be repeated.",
+    help="World whose atmosphere is solved in advance; may be repeated.",
 )
 @click.option(
     "--for-all-users",
     is_flag=True,
     help="Let every user read what lies there, as in an image of a container.",
 )
-@click.option("-q", "--quiet", is_flag=True, help="Print nothing but faults.")
+@click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
 def warm(presets: tuple[str, ...], for_all_users: bool, quiet: bool) -> None:
-    """Compile every kernel, so that no later run has to, as in an image of a container.
+    """Compile every kernel, so that no later run has to, for example in a container image.
 
     \b
     Examples:

@@ -7,7 +7,7 @@ import sys
 from skybake.errors import InputError
 
 LEAST = 1 << 30
-"""Address space below which libraries abort the process instead of telling a fault. [byte]"""
+"""Address space below which libraries abort the process instead of reporting an error. [byte]"""
 
 
 def memory_limit() -> int | None:
@@ -22,9 +22,9 @@ def memory_limit() -> int | None:
 
 
 def memory_text() -> str:
-    """Say of how much memory it was too little."""
+    """Say how much memory there is."""
     limit = memory_limit()
-    return "too little memory" if limit is None else f"a limit of {limit >> 20} MB"
+    return "the system has no more" if limit is None else f"the limit is {limit >> 20} MB"
 
 
 def check_memory() -> None:
@@ -38,5 +38,5 @@ def check_memory() -> None:
     limit = memory_limit()
     if limit is not None and limit < LEAST:
         raise InputError(
-            f"memory: must be at least {LEAST >> 20} MB of address space, got {memory_text()}"
+            f"memory: skybake needs at least {LEAST >> 30} GB of address space ({memory_text()})"
         )

@@ -32,14 +32,16 @@ def list_() -> None:
 @presets.command()
 @click.argument("name", metavar="NAME|PATH")
 @click.option(
-    "--resolved", is_flag=True, help="Print it with what it extends, and where each key is from."
+    "--resolved",
+    is_flag=True,
+    help="Print it with what it extends and the origin of each key.",
 )
 @change_options
 def show(name: str, resolved: bool, **_: Any) -> None:
     """Print the preset NAME as TOML: its own file, with the source of every value in it.
 
-    With --resolved, or with a change, what it extends is merged into it, and each key from
-    there names the file.
+    With --resolved, or with a change, what it extends is merged into it, and each inherited key
+    names the file that it comes from.
 
     \b
     Examples:
@@ -62,11 +64,11 @@ def show(name: str, resolved: bool, **_: Any) -> None:
 @click.argument("name", metavar="NAME|PATH")
 @change_options
 def check(name: str, **_: Any) -> None:
-    """Tell every fault of a preset, or figures that follow from it.
+    """Report every error in a preset, or print figures that follow from it.
 
-    Each fault is a line with the file and the key; the exit status is then 1. Otherwise it prints
+    Each error is one line with the file and the key; the exit status is then 1. Otherwise it prints
     optical depths, single scattering albedos, columns, visibility and the light of the sun, and
-    says so if the air is too thick to render.
+    warns if the atmosphere is too thick to render.
 
     \b
     Examples:
@@ -101,7 +103,8 @@ def check(name: str, **_: Any) -> None:
 def new(name: str, base: str) -> None:
     """Write NAME.toml, a world of your own that extends a preset.
 
-    All that can be changed stands in it as remarks. A file that is there already is kept.
+    Everything that can be changed is listed in it as comments. An existing file is never
+    overwritten.
 
     \b
     Examples:
@@ -115,7 +118,7 @@ def new(name: str, base: str) -> None:
     path = Path(f"{name.removesuffix('.toml')}.toml")
     check_target(path)
     if path.exists():
-        raise OutputError(f"{path}: must not be there yet")
+        raise OutputError(f"{path}: exists already")
     with replace_when_whole(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
     click.echo(path)

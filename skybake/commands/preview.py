@@ -36,7 +36,7 @@ from skybake.errors import InputError
     show_default=True,
     help="Display transform: ACES 2.0, or that of ACES 1.3.",
 )
-@click.option("-q", "--quiet", is_flag=True, help="Print nothing but faults.")
+@click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
 def preview(source: Path, output: Path | None, ev: float | None, view: str, quiet: bool) -> None:
     """Show the EXR or Radiance map IN as an sRGB picture, through ACES.
 

@@ -21,7 +21,7 @@ def _wavelengths(text: str) -> tuple[float, ...]:
     except ValueError:
         wavelengths = ()
     if not wavelengths or not all(0.0 < value < 1e6 for value in wavelengths):
-        raise click.BadParameter(f"must be as 680,550,440 in nm, got {text!r}")
+        raise click.BadParameter(f"must be wavelengths in nm such as 680,550,440, got {text!r}")
     return wavelengths
 
 
@@ -45,7 +45,8 @@ def _wavelengths(text: str) -> tuple[float, ...]:
 @click.option(
     "--per-irradiance",
     is_flag=True,
-    help="Per unit of the star's irradiance above the air, in sr-1, without luminance and colour.",
+    help="Per unit of the star's irradiance above the atmosphere, in sr-1, without luminance and "
+    "colour.",
 )
 @click.option("--illuminance", is_flag=True, help="Add illuminances by sun and sky, in lx.")
 @click.option(

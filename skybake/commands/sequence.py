@@ -34,7 +34,7 @@ from skybake.errors import SkybakeError
 if TYPE_CHECKING:
     from skybake.sequence.plan import Plan
     from skybake.sequence.products import Products
-    from skybake.sequence.run import Result
+    from skybake.sequence.run import SequenceResult
 
 SOME_FAILED = 3
 
@@ -78,7 +78,7 @@ SOME_FAILED = 3
 @click.option(
     "--skip-existing",
     is_flag=True,
-    help="Leave frames alone whose files are whole and of the same recipe.",
+    help="Skip frames whose files are whole and were baked from the same recipe.",
 )
 @click.option(
     "--retry",
@@ -86,7 +86,7 @@ SOME_FAILED = 3
     type=click.IntRange(0, 100),
     default=0,
     show_default=True,
-    help="How often a frame that failed is tried again.",
+    help="How often a failed frame is tried again.",
 )
 @click.option(
     "--workers",
@@ -115,10 +115,10 @@ SOME_FAILED = 3
 )
 @click.option("-q", "--quiet", is_flag=True, help="Print no progress and no summary.")
 def sequence(**options: Any) -> None:
-    """Bake a sky map for each frame of a day, a climb or a change of the air.
+    """Bake a sky map for each frame of a day, a climb or a change of the atmosphere.
 
-    A range A..B goes evenly from the first frame to the last: of --sun, --sun-azimuth, --altitude,
-    and of a number in --set. With --from and --to the sun stands where it does at a place and time.
+    A range A..B runs evenly from the first frame to the last; --sun, --sun-azimuth, --altitude and
+    numbers in --set can have one. With --from and --to the sun follows its path at a place.
 
     \b
     Examples:
@@ -171,15 +171,17 @@ def _needs(options: Mapping[str, Any]) -> Needs:
     needs: dict[str, tuple[bool, str]] = {
         "workers": (
             options["dask"] is None or is_asked(options),
-            "no --dask beside it, which has workers of its own",
+            "cannot be combined with --dask, which has workers of its own",
         ),
         "as_json": (
             options["style"] != "openjd",
-            "no --progress openjd beside it, also on stdout",
+            "cannot be combined with --progress openjd, which prints to stdout too",
         ),
     }
     has_curve = options["exposure_curve"] is not None
-    return needs | dict.fromkeys(("units", "ev"), (not has_curve, "no --exposure-curve beside it"))
+    return needs | dict.fromkeys(
+        ("units", "ev"), (not has_curve, "cannot be combined with --exposure-curve")
+    )
 
 
 def _plan_from_options(context: click.Context) -> Plan:
@@ -216,7 +218,7 @@ def _plan_from_options(context: click.Context) -> Plan:
         )
 
 
-def _bake(plan: Plan, part: Plan, products: Products, options: Mapping[str, Any]) -> Result:
+def _bake(plan: Plan, part: Plan, products: Products, options: Mapping[str, Any]) -> SequenceResult:
     from skybake.baking import late_kernels
     from skybake.sequence.bake import check_sequence, frame_pool
     from skybake.sequence.run import bake_frames
@@ -243,7 +245,7 @@ def _bake(plan: Plan, part: Plan, products: Products, options: Mapping[str, Any]
         return bake_frames(part, run, retries=options["retry"], tell=tell)
 
 
-def _write_products(products: Products, result: Result) -> list[Path]:
+def _write_products(products: Products, result: SequenceResult) -> list[Path]:
     """Write them; where frames failed, their failure stays the one that counts."""
     try:
         return products.write(result)

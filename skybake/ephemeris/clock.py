@@ -56,7 +56,9 @@ class Clock:
             That names the arguments.
         """
         if self.is_on_mars and self.refraction:
-            raise ArgumentError("{refraction}: is that of Earth's air (the place is on Mars)")
+            raise ArgumentError(
+                "{refraction}: is that of Earth's atmosphere (the place is on Mars)"
+            )
         if self.solar_longitude is None:
             self._check_kinds(texts)
             return
@@ -64,13 +66,14 @@ class Clock:
             raise ArgumentError("{solar_longitude}: is a season of Mars (the place is on Earth)")
         if not 0.0 <= self.solar_longitude <= 2.0 * math.pi + 1e-9:
             raise ArgumentError(
-                "{solar_longitude}: must be from 0deg to 360deg (got {angle:g}deg)",
+                "{solar_longitude}: must be from 0deg to 360deg, got {angle:g}deg",
                 angle=math.degrees(self.solar_longitude),
             )
         for name, value in (("zone", self.zone), ("day", self.day)):
             if value is not None:
                 raise ArgumentError(
-                    f"{{{name}}}: needs no {{solar_longitude}}, which goes with solar time"
+                    f"{{{name}}}: cannot be combined with {{solar_longitude}}, "
+                    "which goes with solar time"
                 )
 
     def _check_kinds(self, texts: Mapping[str, str]) -> None:
@@ -78,8 +81,8 @@ class Clock:
         for name, text in texts.items():
             if self.is_on_mars and kinds[name] in {"event", "unknown"}:
                 raise ArgumentError(
-                    f"{{{name}}}: on Mars must be as 2026-06-21T04:00Z, or as 16:30 with "
-                    "{solar_longitude} (got {text!r})",
+                    f"{{{name}}}: on Mars must be such as 2026-06-21T04:00Z, or 16:30 with "
+                    "{solar_longitude}, got {text!r}",
                     text=text,
                 )
             if kinds[name] == "event" and self.day is None:

@@ -142,7 +142,7 @@ class TimeSpan:
                 return [start + step for step in steps(end - start, self.every)]
         if count is None or not 1 <= count <= MAX_STEPS:
             raise ArgumentError(
-                "{frames}: must be from 1 to {most} (got {count})", most=MAX_STEPS, count=count
+                "{frames}: must be from 1 to {most}, got {count}", most=MAX_STEPS, count=count
             )
         return [start + (end - start) * i / max(count - 1, 1) for i in range(count)]
 

@@ -39,14 +39,14 @@ class Place:
         """Refuse what is nowhere."""
         if not abs(self.latitude) <= math.pi / 2.0 + 1e-9:
             raise ArgumentError(
-                "{latitude}: must be from -90deg to 90deg (got {angle:g}deg)",
+                "{latitude}: must be from -90deg to 90deg, got {angle:g}deg",
                 angle=math.degrees(self.latitude),
             )
         if not math.isfinite(self.longitude):
-            raise ArgumentError("{longitude}: must be finite (got {angle})", angle=self.longitude)
+            raise ArgumentError("{longitude}: must be finite, got {angle}", angle=self.longitude)
         if self.planet not in PLANETS:
             raise ArgumentError(
-                "{planet}: must be one of {known} (got {name!r})",
+                "{planet}: must be one of {known}, got {name!r}",
                 known=", ".join(PLANETS),
                 name=self.planet,
             )
@@ -108,13 +108,13 @@ def find_place(
         given, missing = (
             ("latitude", "longitude") if longitude is None else ("longitude", "latitude")
         )
-        raise ArgumentError(f"{{{given}}}: needs {{{missing}}} beside it")
+        raise ArgumentError(f"{{{given}}}: needs {{{missing}}} as well")
     if site is not None:
         if latitude is not None:
-            raise ArgumentError("{site}: needs no {latitude} and {longitude} beside it")
+            raise ArgumentError("{site}: cannot be combined with {latitude} and {longitude}")
         if site not in SITES:
             raise ArgumentError(
-                "{site}: must be one of {known} (got {name!r})", known=", ".join(SITES), name=site
+                "{site}: must be one of {known}, got {name!r}", known=", ".join(SITES), name=site
             )
         return SITES[site]
     if latitude is None or longitude is None:

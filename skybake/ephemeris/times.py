@@ -47,9 +47,7 @@ def find_zone(name: str) -> ZoneInfo:
     except (KeyError, ValueError, OSError) as error:
         known = available_timezones()
         if not known:
-            raise InputError(
-                "must find a time zone database, got none (pip install tzdata)"
-            ) from error
+            raise InputError("no time zone database is installed (pip install tzdata)") from error
         like = ", ".join(get_close_matches(name, sorted(known), n=3)) or "Europe/Paris, UTC"
         raise InputError(f"unknown time zone {name!r}; nearest: {like}") from error
 
@@ -93,19 +91,19 @@ def parse_time(
     if iso is None:
         like = ", ".join(get_close_matches(text, EVENTS, n=3))
         raise InputError(
-            f"must be as 2026-06-21T04:00Z or an event such as sunset+10min, got {text!r}"
-            + (f"; nearest: {like}" if like else "")
+            "must be a time such as 2026-06-21T04:00Z or an event such as sunset+10min, "
+            f"got {text!r}" + (f"; nearest: {like}" if like else "")
         )
     try:
         moment = datetime.fromisoformat(text)
     except ValueError as error:
-        raise InputError(f"must be a date and time that there is, got {text!r}") from error
+        raise InputError(f"must be a date and time that exists, got {text!r}") from error
     _in_range(moment, text)
     if moment.tzinfo is None:
         if zone is None:
             raise InputError(
-                f"needs an offset, as {text}Z or {text}+02:00, or a time zone, since clocks differ "
-                f"(got {text!r})"
+                f"needs an offset, as {text}Z or {text}+02:00, or a time zone, since clocks "
+                f"differ, got {text!r}"
             )
         return _from_local(moment, zone)
     return moment.astimezone(UTC)

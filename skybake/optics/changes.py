@@ -52,7 +52,7 @@ class PresetChanges:
     def __post_init__(self) -> None:
         """Refuse two hazes."""
         if self.visibility is not None and self.turbidity is not None:
-            raise ArgumentError("{turbidity}: needs no {visibility} beside it")
+            raise ArgumentError("{turbidity}: cannot be combined with {visibility}")
 
     def load(self, preset: str | Path) -> Planet:
         """Load a preset with these changes.

@@ -11,7 +11,7 @@ from skybake.sequence.frame import PreviewSettings
 from skybake.sequence.plan import Plan
 from skybake.sequence.pool import Run, local_pool
 from skybake.sequence.products import Products
-from skybake.sequence.run import Event, Result, bake_frames, common_ev, prepare
+from skybake.sequence.run import FrameEvent, SequenceResult, bake_frames, common_ev, prepare
 
 PreviewEv = float | Literal["auto", "adapt"]
 
@@ -27,9 +27,9 @@ def bake_sequence(
     retries: int = 0,
     workers: int | None = None,
     dask: str | None = None,
-    tell: Callable[[Event], None] | None = None,
+    tell: Callable[[FrameEvent], None] | None = None,
     notice: Callable[[str], None] | None = None,
-) -> Result:
+) -> SequenceResult:
     """Bake the frames of a plan.
 
     Parameters
@@ -55,13 +55,13 @@ def bake_sequence(
     dask : str, optional
         Address of a Dask scheduler, as ``tcp://host:8786``, to bake there instead.
     tell : callable, optional
-        Called with each `Event`.
+        Called with each `FrameEvent`.
     notice : callable, optional
         Called with a line for people where something takes long that later runs save.
 
     Returns
     -------
-    Result
+    SequenceResult
         What became of the frames; one that failed does not stop the others.
 
     Raises

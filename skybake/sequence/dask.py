@@ -17,7 +17,7 @@ from skybake.optics.medium import Medium
 from skybake.pipeline import Pipeline
 from skybake.preset import Planet
 from skybake.scattering.atmosphere import adopt_atmosphere, atmosphere_content
-from skybake.sequence.frame import Outcome, PreviewSettings, finish_frame
+from skybake.sequence.frame import FrameOutcome, PreviewSettings, finish_frame
 from skybake.sequence.plan import Frame, Plan
 from skybake.sequence.pool import Done, Run
 from skybake.sky.sky import Sky
@@ -73,8 +73,8 @@ def dask_pool(
         client = Client(address, timeout=CONNECT_WITHIN, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:
         raise InputError(
-            f"dask: a scheduler must answer at {address} within {CONNECT_WITHIN} s, "
-            f"got {_one_line(error)}"
+            f"dask: no scheduler has answered at {address} within {CONNECT_WITHIN} s "
+            f"({_one_line(error)})"
         ) from error
     futures: dict[Any, Frame] = {}
     try:
@@ -110,7 +110,7 @@ def dask_pool(
 
 def finish_on_worker(
     frame: Frame, planet: Planet, tables: Tables, previews: PreviewSettings, *, skip_existing: bool
-) -> Outcome:
+) -> FrameOutcome:
     """Bake a frame on a worker, with tables that came from afar."""
     if tables is not None:
         adopt_atmosphere(*tables)
@@ -134,9 +134,7 @@ def _check_workers(client: Any, address: str) -> None:
     try:
         client.wait_for_workers(1, timeout=WORKER_WITHIN)
     except TimeoutError as error:
-        raise InputError(
-            f"dask: {address} must have a worker within {WORKER_WITHIN} s, got none"
-        ) from error
+        raise InputError(f"dask: {address} has had no worker within {WORKER_WITHIN} s") from error
     ours = versions()
     for worker, theirs in client.run(versions, on_error="return").items():
         if isinstance(theirs, Exception):
@@ -164,15 +162,15 @@ def _absolute(frame: Frame) -> Any:
     return None if frame.preview is None else frame.preview.absolute()
 
 
-def _outcome(future: Any) -> Outcome | Exception:
+def _outcome(future: Any) -> FrameOutcome | Exception:
     """Return the result of a future, or why there is none."""
     if future.status == "finished":
-        outcome: Outcome = future.result()
+        outcome: FrameOutcome = future.result()
         return outcome
     if future.status == "error":
         error: Exception = future.exception()
         return error
-    return InputError(f"dask: a frame must come back, got {future.status}")
+    return InputError(f"dask: a frame has not come back ({future.status})")
 
 
 def _one_line(error: BaseException) -> str:

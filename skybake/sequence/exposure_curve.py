@@ -86,7 +86,7 @@ def _rows(path: Path) -> list[Mapping[str, str | None]]:
             columns, rows = list(reader.fieldnames or ()), list(reader)
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         reason = getattr(error, "strerror", None) or error
-        raise InputError(f"{path}: must be a CSV file that can be read, got {reason}") from error
+        raise InputError(f"{path}: cannot be read as a CSV file ({reason})") from error
     if columns.count("frame") != 1 or columns.count("ev") != 1:
         found = ", ".join(columns) or "nothing"
         raise InputError(f"{path}: must hold the columns frame and ev, got {found}")

@@ -98,7 +98,7 @@ def write_openjd(
     try:
         folder.mkdir(exist_ok=True)
     except OSError as error:
-        raise OutputError(f"{folder}: must be a folder, got {error.strerror}") from error
+        raise OutputError(f"{folder}: cannot be created ({error.strerror})") from error
     path = folder / "template.json"
     with replace_when_whole(path) as temporary:
         document = _template(arguments, values, name)

@@ -50,7 +50,7 @@ class PreviewSettings:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class FrameOutcome:
     """A frame that is done.
 
     Attributes
@@ -87,7 +87,7 @@ def finish_frame(
     pipeline: Pipeline,
     *,
     skip_existing: bool = False,
-) -> Outcome:
+) -> FrameOutcome:
     """Bake a frame, unless it is there.
 
     Parameters
@@ -127,7 +127,7 @@ def finish_frame(
     else:
         for path in frame.files():
             remove_leftovers(path)
-    return Outcome(
+    return FrameOutcome(
         number=frame.number,
         is_new=is_new,
         light=light,

@@ -60,7 +60,7 @@ def parse_frames(text: str) -> tuple[int, ...]:
 def _parse_part(part: str, text: str) -> range:
     found = _PART.fullmatch(part)
     if found is None:
-        raise InputError(f"frames: must be as 1-100x5,150 or -10--1, got {part!r} in {text!r}")
+        raise InputError(f"frames: must be such as 1-100x5,150 or -10--1, got {part!r} in {text!r}")
     first = int(found[1])
     last = first if found[2] is None else int(found[2])
     step = 1 if found[3] is None else int(found[3])
@@ -165,7 +165,9 @@ class FramePattern:
         tokens = list(_TOKEN.finditer(path.name))
         # One # or @ is part of many a folder's name.
         if any(len(token[0]) > 1 for token in _TOKEN.finditer(str(path.parent))):
-            raise InputError(f"{text}: frame number must stand in the file's name, got a folder's")
+            raise InputError(
+                f"{text}: the frame number belongs in the name of the file, not of a folder"
+            )
         if len(tokens) > 1:
             found = " and ".join(token[0] for token in tokens)
             raise InputError(f"{text}: must have one frame number, as {_EXAMPLE}, got {found}")

@@ -94,7 +94,7 @@ class Plan:
         outside = next((number for number in numbers if not first <= number <= last), None)
         if outside is not None or not frames:
             raise ArgumentError(
-                "{only}: must name frames of {first}-{last} (got {found})",
+                "{only}: must name frames of {first}-{last}, got {found}",
                 first=first,
                 last=last,
                 found=", ".join(map(str, numbers[:1])) if outside is None else outside,
@@ -122,7 +122,7 @@ class Plan:
         for path in (*(path for frame in self.frames for path in frame.files()), *others):
             target = os.path.realpath(path)
             if target in taken:
-                raise OutputError(f"{path}: must be written once, got the file of two")
+                raise OutputError(f"{path}: two files would be written under this name")
             taken.add(target)
 
     def highest_sun(self) -> Frame:

@@ -74,7 +74,7 @@ def plan_sequence(
     if times is not None:
         for name, value in (("sun_elevation", sun_elevation), ("sun_azimuth", sun_azimuth)):
             if value is not None:
-                raise ArgumentError(f"{{{name}}}: needs no {{times}} beside it")
+                raise ArgumentError(f"{{{name}}}: cannot be combined with {{times}}")
     numbers, moments = _numbers_and_moments(frames, times)
     if moments:
         check_planet(moments[0].place, planet_name(preset))
@@ -135,7 +135,7 @@ def _numbers_and_moments(
         raise ArgumentError(
             "{frames}: must be as many as "
             + ("{every} makes" if isinstance(times, TimeSpan) else "{times} are")
-            + ", which is {count} (got {found})",
+            + ", which is {count}, got {found}",
             count=len(moments),
             found=len(numbers),
         )

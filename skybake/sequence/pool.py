@@ -9,10 +9,10 @@ from contextlib import contextmanager
 
 from skybake.jit.workers import Workers, cpu_count
 from skybake.pipeline import Pipeline
-from skybake.sequence.frame import Outcome, PreviewSettings, finish_frame
+from skybake.sequence.frame import FrameOutcome, PreviewSettings, finish_frame
 from skybake.sequence.plan import Frame, Plan
 
-Done = tuple[Frame, Outcome | Exception]
+Done = tuple[Frame, FrameOutcome | Exception]
 Run = Callable[[Sequence[Frame]], Iterator[Done]]
 """Bakes frames and yields each when it is done or has failed, in any order."""
 
@@ -50,7 +50,7 @@ def local_pool(
     threads = ThreadPoolExecutor(workers)
     # Where several frames are baked at once, each keeps to its own thread.
     pipeline = Pipeline(workers=Workers(None if workers == 1 else 1, stop), keep=workers)
-    pending: dict[Future[Outcome], Frame] = {}
+    pending: dict[Future[FrameOutcome], Frame] = {}
 
     def run(frames: Sequence[Frame]) -> Iterator[Done]:
         pending.clear()

@@ -13,11 +13,11 @@ from typing import Any
 from skybake.errors import OutputError
 from skybake.formats.partial import check_target
 from skybake.sequence.animation import STILL_WIDTH, check_animation, write_animation
-from skybake.sequence.frame import Outcome
+from skybake.sequence.frame import FrameOutcome
 from skybake.sequence.frames import FramePattern
 from skybake.sequence.manifest import FrameRecord, SequenceHeader, write_csv, write_manifest
 from skybake.sequence.plan import Frame, Plan
-from skybake.sequence.run import Result
+from skybake.sequence.run import SequenceResult
 from skybake.sequence.sheet import TILE_WIDTH, check_sheet, contact_sheet
 from skybake.sequence.usd import check_usd, write_usd
 
@@ -73,7 +73,9 @@ class Products:
         curve = None if self.plan.exposure_curve is None else self.plan.exposure_curve.path
         for path in self.manifests:
             if curve is not None and path.resolve() == curve.resolve():
-                raise OutputError(f"{path}: must not be the exposure curve, which is read")
+                raise OutputError(
+                    f"{path}: cannot be written, because the exposure curve is read from it"
+                )
             if path.suffix.lower() == ".usda":
                 maps = (_seen_from(path.parent, frame.output) for frame in self.plan.frames)
                 check_usd(path, _header(self).projection, maps)
@@ -84,7 +86,7 @@ class Products:
         if self.animation is not None:
             check_animation(self.animation, self.fps)
 
-    def write(self, result: Result) -> list[Path]:
+    def write(self, result: SequenceResult) -> list[Path]:
         """Write the files and return their names; of no frames none."""
         outcomes = result.outcomes
         if not outcomes:
@@ -149,7 +151,7 @@ def _common(recipes: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     return common
 
 
-def _record(frame: Frame, outcome: Outcome, folder: Path) -> FrameRecord:
+def _record(frame: Frame, outcome: FrameOutcome, folder: Path) -> FrameRecord:
     settings, light = frame.settings, outcome.light
     time = frame.attributes.get("skybake:time")
     return FrameRecord(

@@ -9,14 +9,14 @@ from typing import Literal
 from skybake.errors import SkybakeError
 from skybake.image.picture import scene_ev
 from skybake.image.scene import Scene
-from skybake.sequence.frame import Outcome
+from skybake.sequence.frame import FrameOutcome
 from skybake.sequence.plan import Frame, Plan
 from skybake.sequence.pool import Run
 from skybake.sky.sky import Sky
 
 
 @dataclass(frozen=True)
-class Event:
+class FrameEvent:
     """News of one frame.
 
     Attributes
@@ -39,24 +39,24 @@ class Event:
 
 
 @dataclass(frozen=True)
-class Result:
+class SequenceResult:
     """What became of a sequence.
 
     Attributes
     ----------
-    outcomes : tuple of Outcome
+    outcomes : tuple of FrameOutcome
         Frames that are done, by ascending number.
     failures : dict of int to str
         Why the others failed, by number.
     """
 
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[FrameOutcome, ...]
     failures: dict[int, str]
 
 
 def bake_frames(
-    plan: Plan, run: Run, *, retries: int = 0, tell: Callable[[Event], None] = lambda _: None
-) -> Result:
+    plan: Plan, run: Run, *, retries: int = 0, tell: Callable[[FrameEvent], None] = lambda _: None
+) -> SequenceResult:
     """Bake the frames of a plan.
 
     Parameters
@@ -68,9 +68,9 @@ def bake_frames(
     retries : int, optional
         How often a frame that failed is tried again, after all others.
     tell : callable, optional
-        Called with each `Event`.
+        Called with each `FrameEvent`.
     """
-    outcomes: list[Outcome] = []
+    outcomes: list[FrameOutcome] = []
     failures: dict[int, str] = {}
     waiting = plan.frames
     total = len(waiting)
@@ -80,7 +80,7 @@ def bake_frames(
         for frame, outcome in run(waiting):
             message = ""
             kind: Literal["baked", "skipped", "failed", "retried"]
-            if isinstance(outcome, Outcome):
+            if isinstance(outcome, FrameOutcome):
                 kind = "baked" if outcome.is_new else "skipped"
                 outcomes.append(outcome)
                 failures.pop(frame.number, None)
@@ -89,12 +89,12 @@ def bake_frames(
                 failed.append(frame)
                 failures[frame.number] = message = _message(outcome)
             done += kind != "retried"
-            tell(Event(frame, kind, done, total, message))
+            tell(FrameEvent(frame, kind, done, total, message))
         waiting = tuple(sorted(failed, key=lambda frame: frame.number))
         if not waiting:
             break
     outcomes.sort(key=lambda outcome: outcome.number)
-    return Result(tuple(outcomes), dict(sorted(failures.items())))
+    return SequenceResult(tuple(outcomes), dict(sorted(failures.items())))
 
 
 def prepare(plan: Plan, notice: Callable[[str], None] | None = None) -> None:

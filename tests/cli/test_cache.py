@@ -76,7 +76,7 @@ def test_clear_names_a_folder_that_it_cannot_remove(tmp_path, cold):
     folder.chmod(0o555)
     status, output, errors = run("cache", "clear", env=cold, wrapper=AS_A_USER)
     assert (status, output) == (1, "")
-    assert errors == f"skybake: {folder}: must be removable, got 3.0 MB that stay\n"
+    assert errors == f"skybake: {folder}: cannot be removed (3.0 MB remain)\n"
     folder.chmod(0o755)
 
 

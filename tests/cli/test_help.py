@@ -173,15 +173,6 @@ def test_a_shown_preset_is_its_file():
     assert "[constituents.dust]" in shown
 
 
-def test_public_names_are_there_and_others_are_not():
-    for name in skybake.__all__:
-        assert getattr(skybake, name) is not None
-    assert callable(skybake.bake)
-    assert set(skybake.__all__) <= set(dir(skybake))
-    with pytest.raises(AttributeError, match="has no attribute 'bakery'"):
-        _ = skybake.bakery
-
-
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_the_shells_get_their_completion(shell):
     status, output, _ = run(env={"_SKYBAKE_COMPLETE": f"{shell}_source"})

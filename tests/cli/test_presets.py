@@ -114,17 +114,32 @@ def test_visibility_counts_on_what_was_set_before():
     assert blue == green == red == pytest.approx(3.912 / 10 - 0.0117, abs=2e-3)
 
 
+FORM = "'--set': must have the form KEY=VALUE, such as aerosol.optical_depth=0.3"
+
+
 @pytest.mark.parametrize(
     ("arguments", "status", "message"),
     [
-        ("--set x", 2, "'--set': must be as aerosol.optical_depth=0.3, got 'x'"),
-        ("--set =3", 2, "'--set': must be as aerosol.optical_depth=0.3, got '=3'"),
-        ("--set a=", 2, "'--set': must be as aerosol.optical_depth=0.3, got 'a='"),
+        (
+            "--set x",
+            2,
+            f"{FORM}, got 'x'",
+        ),
+        (
+            "--set =3",
+            2,
+            f"{FORM}, got '=3'",
+        ),
+        (
+            "--set a=",
+            2,
+            f"{FORM}, got 'a='",
+        ),
         ("--visibility 20deg", 2, "'--visibility': must be a length such as 2km"),
         ("--visibility 0", 2, "'--visibility': must be greater than 0m, got 0"),
         ("--turbidity 0.9", 2, "'--turbidity': must be a number of at least 1, which is pure gas"),
         ("--turbidity inf", 2, "'--turbidity': must be a number of at least 1, which is pure gas"),
-        ("--visibility 20km --turbidity 2", 2, "--turbidity: needs no --visibility beside it"),
+        ("--visibility 20km --turbidity 2", 2, "--turbidity: cannot be combined with --visibility"),
         ("--ozone 3km", 2, "'--ozone': must be a column of gas such as 320DU (units: DU; a bare"),
         ("--ozone -1", 2, "'--ozone': must be at least 0DU, got -1"),
         ("--set aerosol.optical_depht=1", 1, "'optical_depht', nearest: optical_depth, "),
@@ -194,8 +209,8 @@ def test_a_new_world_may_extend_a_file_and_is_moved_without_losing_it(tmp_path, 
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("own",), "own.toml: must not be there yet"),
-        (("own.toml",), "own.toml: must not be there yet"),
+        (("own",), "own.toml: exists already"),
+        (("own.toml",), "own.toml: exists already"),
         (("a/b",), "name: must be of letters, digits, _ and -, got 'a/b'"),
         (("x" * 300,), "File name too long"),
         (("a", "--from", "erth"), "unknown preset 'erth'; known presets: earth, "),

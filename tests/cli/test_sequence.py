@@ -27,25 +27,25 @@ USAGE = """
 --frames 3-1                           => '--frames': a range must ascend, got '3-1'
 --frames 1-3x0                         => '--frames': a step must be at least 1
 --frames 1-9999999                     => '--frames': must be at most 1000000, got more
---frames x                             => '--frames': must be as 1-100x5,150 or -10--1, got 'x'
---frames 1-3 --only 4                  => --only: must name frames of 1-3 (got 4)
---frames 1-3 --only 2-4                => --only: must name frames of 1-3 (got 4)
---frames 1-9x4 --only 0-5              => --only: must name frames of 1-9 (got 0)
---frames 1-9x4 --only 2-4              => --only: must name frames of 1-9 (got 2)
+--frames x                             => '--frames': must be such as 1-100x5,150 or -10--1, got 'x'
+--frames 1-3 --only 4                  => --only: must name frames of 1-3, got 4
+--frames 1-3 --only 2-4                => --only: must name frames of 1-3, got 4
+--frames 1-9x4 --only 0-5              => --only: must name frames of 1-9, got 0
+--frames 1-9x4 --only 2-4              => --only: must name frames of 1-9, got 2
 --frames 1-3 --every 10min             => --every: needs --from and --to
 --frames 1-3 --lat 48 --lon 2          => --lat: needs --from and --to
---frames 1-3 --from 2026-06-21T04:00Z  => --from: needs --to beside it
-P --frames 1-3 D --sun 30              => --sun: needs no --from and --to beside it
-P --frames 1-3 D --sun-azimuth 30      => --sun-azimuth: needs no --from and --to beside it
+--frames 1-3 --from 2026-06-21T04:00Z  => --from: needs --to as well
+P --frames 1-3 D --sun 30              => --sun: cannot be combined with --from and --to
+P --frames 1-3 D --sun-azimuth 30      => --sun-azimuth: cannot be combined with --from and --to
 P D                                    => --frames: is needed, or --every
 P D --every 0min                       => '--every': must be greater than 0s, got 0min
 P D --every soon                       => '--every': must be a duration such as 10min
-P D --every 1h --frames 1-3            => --frames: must be as many as --every makes, which is 6 (g
+P D --every 1h --frames 1-3            => --frames: must be as many as --every makes, which is 6, g
 P --from 2026-06-21T04:00 --to 2026-06-21T04:00 --every 1h => --to: must be after the start
 --from 2026-06-21T04:00 --to 2026-06-21T06:00 --every 1h --lat 1 --lon 2 => --from: needs an offset
 --frames 1-3 -o sky.exr                => --output: sky.exr: must have a place for the frame number
 --frames 1-3 -o sky.##.##.exr          => --output: sky.##.##.exr: must have one frame number
---frames 1-3 -o a.##/sky.exr           => --output: a.##/sky.exr: frame number must stand in the fil
+--frames 1-3 -o a.##/sky.exr           => --output: a.##/sky.exr: the frame number belongs in the na
 --frames 1-3 -o sky.%5x.exr            => --output: sky.%5x.exr: frame number must be as ####
 --frames 1-3 -o sky.####               => '-o' / '--output': sky.####: suffix must be .exr or .hdr
 --frames 1-3 --preview sky.png         => --preview: sky.png: must have a place for the frame number
@@ -54,8 +54,8 @@ P --from 2026-06-21T04:00 --to 2026-06-21T04:00 --every 1h => --to: must be afte
 --frames 1-3 --preview-ev 3            => --preview-ev: needs --preview or --contact-sheet or --anim
 --frames 1-3 --view aces1              => --view: needs --preview or --contact-sheet or --animate
 --frames 1-3 --preview --preview-ev x  => '--preview-ev': must be auto or a number from -30 to 40
---frames 1-3 --exposure-curve a.csv --ev 3 => --ev: needs no --exposure-curve beside it
---frames 1-3 --exposure-curve a.csv --units nits => --units: needs no --exposure-curve beside it
+--frames 1-3 --exposure-curve a.csv --ev 3 => --ev: cannot be combined with --exposure-curve
+--frames 1-3 --exposure-curve a.csv --units nits => --units: cannot be combined with --exp
 --frames 1-3 --manifest a.xml          => '--manifest': a.xml: suffix must be .json or .csv or .usda
 --frames 1-3 --contact-sheet a.jpg     => '--contact-sheet': a.jpg: suffix must be .png
 --frames 1-3 --animate a.mp4           => '--animate': a.mp4: suffix must be .webp or .gif
@@ -69,11 +69,11 @@ P --from 2026-06-21T04:00 --to 2026-06-21T04:00 --every 1h => --to: must be afte
 --frames 1-3 --retry -1                => '--retry': -1 is not in the range 0<=x<=100
 --frames 1-3 --chunk-size 0            => '--chunk-size': 0 is not in the range x>=1
 --frames 1-3 --chunk-size 3            => --chunk-size: needs --emit-commands or --emit-openjd
---frames 1-3 --dry-run --emit-commands => --dry-run: needs no --emit-commands or --emit-openjd
---frames 1-3 --dry-run --emit-openjd j => --dry-run: needs no --emit-commands or --emit-openjd
+--frames 1-3 --dry-run --emit-commands => --dry-run: cannot be combined with --emit-commands or
+--frames 1-3 --dry-run --emit-openjd j => --dry-run: cannot be combined with --emit-commands or
 --frames 1-3 --emit-openjd=            => '--emit-openjd': must name a folder, got ''
---frames 1-3 --workers 2 --dask tcp://a:1 => --workers: needs no --dask beside it
---frames 1-3 --json --progress openjd  => --json: needs no --progress openjd beside it
+--frames 1-3 --workers 2 --dask tcp://a:1 => --workers: cannot be combined with --dask
+--frames 1-3 --json --progress openjd  => --json: cannot be combined with --progress openjd
 P E --date 0001-01-01 --frames 1-3     => --from: date must be in the years 1000 to 2999, got 0001-
 P E --date 9999-12-31 --frames 1-3     => --from: date must be in the years 1000 to 2999, got 9999-
 --frames 1-3 --progress loud           => '--progress': 'loud' is not one of 'auto', 'bar', 'plain'
@@ -108,12 +108,12 @@ FAILED = """
 --contact-sheet absent/a.png        => absent/a.png: folder must exist, got
 --animate absent/a.webp             => absent/a.webp: folder must exist, got
 --animate a.gif --fps 90            => a.gif: frames per second must be from 0.1 to 50, got 90
---exposure-curve absent.csv         => must be a CSV file that can be read, got No such file or dir
+--exposure-curve absent.csv         => cannot be read as a CSV file (No such file or dir
 --projection cubemap --size 8 --manifest a.usda => a.usda: a dome light of USD needs maps of the
 -o \x01.#.exr --manifest a.usda      => a.usda: USD must be able to hold a file's name, got
---manifest a.json --manifest ./a.json => a.json: must be written once, got the file of two
---preview a.#.png --contact-sheet a.0002.png => a.0002.png: must be written once, got the file of
---emit-openjd absent/job            => absent/job: must be a folder, got
+--manifest a.json --manifest ./a.json => a.json: two files would be written under this name
+--preview a.#.png --contact-sheet a.0002.png => a.0002.png: two files would be written under th
+--emit-openjd absent/job            => absent/job: cannot be created (
 """
 
 
@@ -130,14 +130,14 @@ def test_what_cannot_be_done_is_one_line_exit_1_and_no_file(folder, arguments, m
         ("frame,ev\n", "must hold at least one frame and its ev, got none"),
         ("frame;ev\n1;15\n", "must hold the columns frame and ev, got frame;ev"),
         ("frame,ev,ev\n1,15,3\n", "must hold the columns frame and ev, got frame, ev, ev"),
-        (f"frame,ev\n1,{'1' * 200_000}\n", "must be a CSV file that can be read, got field larger"),
+        (f"frame,ev\n1,{'1' * 200_000}\n", "cannot be read as a CSV file (field larger"),
         ("frame,ev\ninf,15\n", "line 2: frame must be finite, got inf"),
         ("frame,ev\n1,bright\n", "line 2: must hold numbers under frame and ev"),
         ("frame,ev\n1\n", "line 2: must hold numbers under frame and ev"),
         ("frame,ev\n1,41\n", "line 2: ev must be from -30 to 40, got 41"),
         ("frame,ev\n1,nan\n", "line 2: ev must be from -30 to 40, got nan"),
         ("frame,ev\n2,15\n1,14\n", "line 3: frames must ascend, got 1"),
-        (b"\xff\xfe\x00", "must be a CSV file that can be read, got"),
+        (b"\xff\xfe\x00", "cannot be read as a CSV file ("),
     ],
 )
 def test_a_faulty_exposure_curve_is_one_line(folder, content, message):
@@ -152,7 +152,7 @@ def test_an_exposure_curve_is_not_written_over(folder):
     Path("ev.csv").write_text("frame,ev\n1,15\n", encoding="utf-8")
     arguments = ("--exposure-curve", "ev.csv", "--manifest", folder / "ev.csv")
     result = invoke("sequence", *QUICK, *THREE, *arguments)
-    check_fault(result, 1, "ev.csv: must not be the exposure curve, which is read")
+    check_fault(result, 1, "ev.csv: cannot be written, because the exposure curve is read")
     assert listing(folder) == ["ev.csv"]
 
 
@@ -263,7 +263,9 @@ def test_two_frames_never_share_a_file(folder):
     for name in ("a.1_px.exr", "a.2_nz.exr"):
         (folder / name).symlink_to(folder / "same.exr")
     planet = load_preset("earth")
-    with pytest.raises(OutputError, match=r"a.2_nz.exr: must be written once, got the file of two"):
+    with pytest.raises(
+        OutputError, match=r"a.2_nz.exr: two files would be written under this name"
+    ):
         Plan((planet,), (first, second)).check("aces2")
     Plan((planet,), (first,)).check("aces2")
 

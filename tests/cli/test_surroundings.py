@@ -96,7 +96,7 @@ def test_without_standard_output_the_program_ends_in_peace(arguments):
 def test_a_full_disk_below_standard_output_is_one_line():
     with Path("/dev/full").open("w") as full:
         status, _, errors = run("presets", "show", "mars", stdout=full)
-    assert (status, errors) == (1, "skybake: must be able to write, got No space left on device\n")
+    assert (status, errors) == (1, "skybake: output: cannot be written (No space left on device)\n")
 
 
 BARE = """
@@ -170,8 +170,8 @@ def test_too_little_memory_is_one_line(tmp_path, arguments, megabytes):
     status, output, errors = run(*arguments, cwd=tmp_path, wrapper=limited(megabytes))
     assert (status, output) == (1, "")
     assert errors == (
-        "skybake: memory: must be at least 1024 MB of address space, "
-        f"got a limit of {megabytes} MB\n"
+        "skybake: memory: skybake needs at least 1 GB of address space "
+        f"(the limit is {megabytes} MB)\n"
     )
     assert listing(tmp_path) == []
 
@@ -192,7 +192,7 @@ def test_memory_that_ends_on_the_way_is_one_line(tmp_path):
     assert output.open(str(tmp_path / "a.exr"), OpenImageIO.ImageSpec(16384, 8192, 3, "half"))
     assert output.close()
     found = run("preview", "a.exr", cwd=tmp_path, wrapper=limited(1536))
-    assert found == (1, "", "skybake: memory: must be more, got a limit of 1536 MB\n")
+    assert found == (1, "", "skybake: memory: too little for this task (the limit is 1536 MB)\n")
     assert listing(tmp_path) == ["a.exr"]
 
 
@@ -200,7 +200,7 @@ def test_memory_that_ends_on_the_way_is_one_line(tmp_path):
 @pytest.mark.parametrize("arguments", HEAVY[:2], ids=" ".join)
 def test_threads_without_memory_for_their_stacks_are_one_line(tmp_path, arguments):
     found = run(*arguments, "-q", cwd=tmp_path, wrapper=limited(1536, stack=2048))
-    threads = "threads: must be able to start, got too little memory or too few processes"
+    threads = "threads: none can be started (too little memory, or too few processes allowed)"
     assert found == (1, "", f"skybake: {threads}\n")
     assert listing(tmp_path) == []
 

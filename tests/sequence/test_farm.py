@@ -132,7 +132,7 @@ def test_what_openjd_would_expand_is_refused(tmp_path):
 def test_a_folder_that_cannot_be_made_is_an_error_of_one_line(tmp_path):
     (tmp_path / "file").touch()
     for folder in (tmp_path / "file", tmp_path / "absent" / "job"):
-        with pytest.raises(OutputError, match="must be a folder, got"):
+        with pytest.raises(OutputError, match="cannot be created"):
             write_openjd(folder, ARGUMENTS, (1,), 1, "sky")
 
 

@@ -72,8 +72,8 @@ def emit_needs(options: Mapping[str, Any]) -> Needs:
     """Return what the options of emitted commands need, and those that they leave no effect."""
     emits = is_asked(options)
     return {
-        "chunk_size": (emits, "--emit-commands or --emit-openjd"),
-        "dry_run": (not emits, "no --emit-commands or --emit-openjd beside it"),
+        "chunk_size": (emits, "needs --emit-commands or --emit-openjd"),
+        "dry_run": (not emits, "cannot be combined with --emit-commands or --emit-openjd"),
     }
 
 

@@ -117,17 +117,17 @@ def map_needs(options: Mapping[str, Any]) -> Needs:
     if is_radiance and options["cube_layout"] == "exr":
         raise click.UsageError("--cube-layout exr: needs an .exr output")
     return {
-        "cube_layout": (options["projection"] == "cubemap", "--projection cubemap"),
+        "cube_layout": (options["projection"] == "cubemap", "needs --projection cubemap"),
         **dict.fromkeys(
             ("fov", "look"),
             (
                 options["projection"] in {"fisheye", "perspective"},
-                "--projection perspective or fisheye",
+                "needs --projection perspective or fisheye",
             ),
         ),
-        "pixel": (not is_radiance, "an .exr output"),
-        "compression": (not is_radiance, "an .exr output"),
-        "units": (options["ev"] is None, "no --ev beside it"),
+        "pixel": (not is_radiance, "needs an .exr output"),
+        "compression": (not is_radiance, "needs an .exr output"),
+        "units": (options["ev"] is None, "cannot be combined with --ev"),
     }
 
 

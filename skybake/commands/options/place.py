@@ -37,7 +37,7 @@ place_options = options_together(
     click.option(
         "--site",
         type=click.Choice(tuple(SITES)),
-        help="Place on Mars instead.",
+        help="Place on Mars, instead of --lat and --lon.",
     ),
     click.option(
         "--ls",
@@ -62,7 +62,7 @@ place_options = options_together(
     click.option(
         "--refraction",
         is_flag=True,
-        help="Lift the sun as Earth's air does, by half a degree at the horizon.",
+        help="Raise the sun by refraction in Earth's atmosphere, half a degree at the horizon.",
     ),
 )
 
@@ -70,11 +70,11 @@ place_options = options_together(
 def place_needs(*, is_timed: bool, time: str) -> Needs:
     """Return what the options of a place need: `time`, the option or options of a time.
 
-    Where these are given, the sun needs no angles.
+    Where these are given, the sun cannot be put by angles.
     """
     where = ("latitude", "longitude", "site", "solar_longitude", "zone", "day", "refraction")
-    return dict.fromkeys(where, (is_timed, time)) | dict.fromkeys(
-        ("sun_elevation", "sun_azimuth"), (not is_timed, f"no {time} beside it")
+    return dict.fromkeys(where, (is_timed, f"needs {time}")) | dict.fromkeys(
+        ("sun_elevation", "sun_azimuth"), (not is_timed, f"cannot be combined with {time}")
     )
 
 

@@ -67,4 +67,4 @@ def preview_needs(options: Mapping[str, Any]) -> Needs:
     pictures = [name for name in _SEQUENCE_PICTURES if name in options]
     has_pictures = any(options[name] is not None for name in pictures)
     need = " or ".join(f"--{name.replace('_', '-')}" for name in pictures)
-    return dict.fromkeys(("preview_ev", "view"), (has_pictures, need))
+    return dict.fromkeys(("preview_ev", "view"), (has_pictures, f"needs {need}"))

@@ -19,7 +19,7 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 Needs = Mapping[str, tuple[bool, str]]
-"""By the name of an option: whether what it needs is there, and what that is."""
+"""By the name of an option: whether it has an effect beside the others, and if not, why."""
 
 
 def options_together(*options: Decorator) -> Callable[[Command], Command]:
@@ -41,7 +41,7 @@ def is_given(context: click.Context, name: str) -> bool:
 
 
 def check_needs(context: click.Context, *all_needs: Needs) -> None:
-    """Refuse options that would have no effect without what they need.
+    """Refuse options that would have no effect beside the others.
 
     Raises
     ------
@@ -51,9 +51,9 @@ def check_needs(context: click.Context, *all_needs: Needs) -> None:
     names = option_names(context)
     for name, option in names.items():
         for needs in all_needs:
-            is_met, need = needs.get(name, (True, ""))
-            if not is_met and is_given(context, name):
-                raise click.UsageError(f"{option}: needs {need}")
+            is_fine, problem = needs.get(name, (True, ""))
+            if not is_fine and is_given(context, name):
+                raise click.UsageError(f"{option}: {problem}")
 
 
 def option_names(context: click.Context) -> dict[str, str]:

@@ -75,9 +75,9 @@ def span_needs(context: click.Context) -> Needs:
     start, end = context.params["start"], context.params["end"]
     is_timed = start is not None or end is not None
     return {
-        "start": (end is not None, "--to beside it"),
-        "end": (start is not None, "--from beside it"),
-        "every": (is_timed, "--from and --to"),
+        "start": (end is not None, "needs --to as well"),
+        "end": (start is not None, "needs --from as well"),
+        "every": (is_timed, "needs --from and --to"),
         **place_needs(is_timed=is_timed, time="--from and --to"),
     }
 

@@ -105,7 +105,7 @@ def altitude(text: str) -> float:
 def size(text: str) -> tuple[int, ...]:
     """Read width and height, or an edge: ``4096x2048``, ``1024``."""
     if not re.fullmatch(r"\d{1,9}(x\d{1,9})?", text, re.ASCII):
-        raise click.BadParameter(f"must be as 4096x2048, or as 1024 for a cubemap, got {text!r}")
+        raise click.BadParameter(f"must be such as 4096x2048, or 1024 for a cubemap, got {text!r}")
     return tuple(int(number) for number in text.split("x"))
 
 

@@ -61,7 +61,9 @@ def _read_change(text: str) -> tuple[str, Any]:
     """Read ``KEY=VALUE``; a value that is no TOML is a text."""
     key, equals, value = (part.strip() for part in text.partition("="))
     if not (key and equals and value):
-        raise click.BadParameter(f"must be as aerosol.optical_depth=0.3, got {text!r}")
+        raise click.BadParameter(
+            f"must have the form KEY=VALUE, such as aerosol.optical_depth=0.3, got {text!r}"
+        )
     return key, read_value(value)
 
 
@@ -108,26 +110,26 @@ change_options = options_together(
         metavar="KEY=VALUE",
         type=_read_change,
         multiple=True,
-        help="Change the preset, as aerosol.optical_depth=0.3; may be repeated.",
+        help="Change the preset, such as aerosol.optical_depth=0.3; may be repeated.",
     ),
     click.option(
         "--visibility",
         metavar="LENGTH",
         type=_visibility,
-        help="Haze with which one sees so far at the ground: 3.912 / extinction at 550 nm.",
+        help="Haze that gives this visibility at the ground: 3.912 / extinction at 550 nm.",
     ),
     click.option(
         "--turbidity",
         metavar="T",
         type=_turbidity,
-        help="Haze by optical depth of gas and aerosol over that of gas, vertical, 550 nm.",
+        help="Haze by the vertical optical depth of gas and aerosol over that of gas, at 550 nm.",
     ),
-    click.option("--ozone", metavar="COLUMN", type=_ozone, help="Column of ozone, as 320DU."),
+    click.option("--ozone", metavar="COLUMN", type=_ozone, help="Column of ozone, such as 320DU."),
     click.option(
         "--ground-albedo",
         metavar="NUMBER|NAME",
         type=read_value,
-        help="Albedo of the ground, as 0.8 or snow.",
+        help="Albedo of the ground, such as 0.8 or snow.",
     ),
 )
 

@@ -13,7 +13,7 @@ import click
 from skybake.commands.printing.notices import notice
 
 if TYPE_CHECKING:
-    from skybake.sequence.run import Event
+    from skybake.sequence.run import FrameEvent
 
 _STEPS = 1000
 
@@ -48,7 +48,7 @@ class FrameProgress:
         self._started = time.perf_counter()
         self._baked = 0
 
-    def __call__(self, event: Event) -> None:
+    def __call__(self, event: FrameEvent) -> None:
         """Tell of one frame."""
         self._baked += event.kind == "baked"
         if self._style == "bar":
@@ -59,13 +59,13 @@ class FrameProgress:
             click.echo(f"openjd_progress: {100.0 * event.done / event.total:.1f}")
             click.echo(f"openjd_status: {self._line(event)}")
 
-    def _line(self, event: Event) -> str:
+    def _line(self, event: FrameEvent) -> str:
         news = f"{event.kind} {event.frame.output}"
         if event.message:
             return f"{event.done}/{event.total} {news}: {event.message}"
         return f"{event.done}/{event.total} {news}{self._speed(event)}"
 
-    def _speed(self, event: Event) -> str:
+    def _speed(self, event: FrameEvent) -> str:
         """Frames in a second, and how long the others will take; of skipped ones nothing."""
         if not self._baked:
             return ""

@@ -13,7 +13,7 @@ from skybake.commands.printing.notices import notice
 
 if TYPE_CHECKING:
     from skybake.sequence.plan import Plan
-    from skybake.sequence.run import Result
+    from skybake.sequence.run import SequenceResult
 
 
 def print_plan(plan: Plan, *, as_json: bool) -> None:
@@ -31,7 +31,7 @@ def print_plan(plan: Plan, *, as_json: bool) -> None:
         )
 
 
-def print_summary(result: Result, written: Sequence[Path], seconds: float) -> None:
+def print_summary(result: SequenceResult, written: Sequence[Path], seconds: float) -> None:
     """Print the files about the sequence, and how many frames went how, for people."""
     for path in written:
         click.echo(path)
@@ -41,7 +41,7 @@ def print_summary(result: Result, written: Sequence[Path], seconds: float) -> No
     )
 
 
-def print_json(result: Result, written: Sequence[Path], seconds: float) -> None:
+def print_json(result: SequenceResult, written: Sequence[Path], seconds: float) -> None:
     """Print one JSON object on one line, see docs/cli.md."""
     baked, skipped = _counts(result)
     told = {
@@ -55,7 +55,7 @@ def print_json(result: Result, written: Sequence[Path], seconds: float) -> None:
     click.echo(json.dumps(told))
 
 
-def print_failures(result: Result, *, openjd: bool) -> None:
+def print_failures(result: SequenceResult, *, openjd: bool) -> None:
     """Say why frames failed, and which; to the Open Job Description too if it listens."""
     from skybake.sequence.frames import format_frames
 
@@ -67,7 +67,7 @@ def print_failures(result: Result, *, openjd: bool) -> None:
         click.echo(f"openjd_fail: {line}")
 
 
-def _counts(result: Result) -> tuple[int, int]:
+def _counts(result: SequenceResult) -> tuple[int, int]:
     """How many frames were baked, and how many were skipped."""
     baked = sum(outcome.is_new for outcome in result.outcomes)
     return baked, len(result.outcomes) - baked
