@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import math
 import re
 from collections.abc import Mapping, Sequence
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from skybake import input_files
 from skybake.commands import moment, place, request, world
 from skybake.errors import InputError
 from skybake.sequence.ramp import Ramp, shares
@@ -213,13 +215,12 @@ def _exposure_curve(options: dict[str, Any]) -> list[tuple[float, float]] | None
     path: Path | None = options["exposure_curve"]
     if path is None:
         return None
+    text = input_files.read_text(path, str(path), input_files.LARGEST_TABLE)
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            reader = csv.DictReader(file)
-            columns, rows = list(reader.fieldnames or ()), list(reader)
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise InputError(f"{path}: must be a CSV file that can be read, got {reason}") from error
+        reader = csv.DictReader(io.StringIO(text, newline=""))
+        columns, rows = list(reader.fieldnames or ()), list(reader)
+    except csv.Error as error:
+        raise InputError(f"{path}: must be a CSV file that can be read, got {error}") from error
     if columns.count("frame") != 1 or columns.count("ev") != 1:
         found = ", ".join(columns) or "nothing"
         raise InputError(f"{path}: must hold the columns frame and ev, got {found}")

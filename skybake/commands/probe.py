@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import io
 import sys
 from pathlib import Path
 from typing import Any
 
 import click
 
+from skybake import input_files
 from skybake.commands import parameters, world
 from skybake.commands.memory import check_memory
-from skybake.errors import InputError
+
+_MOST_WAVELENGTHS = 256
 
 
 def _wavelengths(text: str) -> tuple[float, ...]:
@@ -20,6 +23,8 @@ def _wavelengths(text: str) -> tuple[float, ...]:
         values = ()
     if not values or not all(0.0 < value < 1e6 for value in values):
         raise click.BadParameter(f"must be as 680,550,440 in nm, got {text!r}")
+    if len(values) > _MOST_WAVELENGTHS:
+        raise click.BadParameter(f"must be at most {_MOST_WAVELENGTHS}, got {len(values)}")
     return values
 
 
@@ -64,6 +69,7 @@ def _wavelengths(text: str) -> tuple[float, ...]:
     *("-o", "--output"),
     metavar="FILE.csv",
     type=click.Path(path_type=Path),
+    callback=parameters.with_suffix(".csv"),
     show_default="standard output",
     help="CSV to write.",
 )
@@ -92,14 +98,12 @@ def probe(**options: Any) -> None:
     if source is None:
         directions = default_directions(options["sun_elevation"])
     elif str(source) == "-":
-        directions = read_directions("standard input", sys.stdin)
+        where = "standard input"
+        text = input_files.read_stream(sys.stdin, where, input_files.LARGEST_DIRECTIONS)
+        directions = read_directions(where, io.StringIO(text, newline=""))
     else:
-        try:
-            with source.open(newline="", encoding="utf-8") as lines:
-                directions = read_directions(str(source), lines)
-        except (OSError, UnicodeDecodeError) as error:
-            reason = getattr(error, "strerror", None) or "not text"
-            raise InputError(f"{source}: must be a readable CSV file, got {reason}") from error
+        text = input_files.read_text(source, str(source), input_files.LARGEST_DIRECTIONS)
+        directions = read_directions(str(source), io.StringIO(text, newline=""))
     wavelengths = options["wavelengths"]
     text = probe(
         planet,
