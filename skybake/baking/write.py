@@ -23,6 +23,7 @@ from skybake.baking.show import scene_ev, show_scene
 from skybake.formats.preview import check_preview, open_preview
 from skybake.formats.scanlines import Rows
 from skybake.formats.spec import Attribute, MapSpec
+from skybake.formats.whole_files import WholeFiles
 from skybake.formats.writer import MapWriter, check_map_path, open_maps
 from skybake.jit.workers import Workers
 from skybake.preset import Planet, load_preset
@@ -183,14 +184,16 @@ def bake_scene(
         for path, panel in panels.items()
     }
     with ExitStack() as stack:
-        # Everything is written before anything takes its name: all files appear, or none.
+        files = stack.enter_context(WholeFiles())
         draw = None
         if preview is not None:
             preview_ev = scene_ev(scene) if preview_ev is None else preview_ev
             texts = preview_texts(planet, settings, preview_ev, preview_view)
-            show = stack.enter_context(open_preview(preview, view=preview_view, texts=texts))
+            show = stack.enter_context(
+                open_preview(preview, view=preview_view, texts=texts, files=files)
+            )
             draw = partial(show_scene, scene, show, preview_ev)
-        writers = stack.enter_context(open_maps(specs))
+        writers = stack.enter_context(open_maps(specs, files))
         _write(panels, writers, scene.workers, progress)
         if draw is not None:
             draw()

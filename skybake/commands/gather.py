@@ -14,7 +14,7 @@ import click
 from skybake.commands.course import output_pattern
 from skybake.commands.emit import HOW, arguments
 from skybake.errors import OutputError
-from skybake.formats.partial import check_target
+from skybake.formats.targets import check_target
 from skybake.sequence.animation import STILL_WIDTH, check_animation, write_animation
 from skybake.sequence.frame import Outcome
 from skybake.sequence.manifest import (

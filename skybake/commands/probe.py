@@ -13,7 +13,7 @@ from skybake import input_files
 from skybake.commands import parameters, world
 from skybake.commands.memory import check_memory
 
-_MOST_WAVELENGTHS = 256
+_MOST_WAVELENGTHS = 128
 
 
 def _wavelengths(text: str) -> tuple[float, ...]:
@@ -91,7 +91,7 @@ def probe(**options: Any) -> None:
     import numpy as np
 
     from skybake.baking.probe import default_directions, probe, read_directions
-    from skybake.formats.partial import replace_when_whole
+    from skybake.formats.whole_files import replace_when_whole
 
     planet = world.load_world(options["preset"], options)
     source: Path | None = options["directions"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +11,9 @@ import numpy.typing as npt
 import OpenImageIO
 
 from skybake.errors import InputError
-from skybake.formats.partial import check_target, replace_when_whole, write_error
 from skybake.formats.spec import Tagged
+from skybake.formats.targets import check_target, faults_of, write_error
+from skybake.formats.whole_files import WholeFiles, replace_when_whole
 
 # Named, because the defaults of OpenColorIO follow $OCIO and the version of the library.
 _VIEWS = {
@@ -87,18 +88,22 @@ def open_preview(
     view: str = "aces2",
     max_width: int = 1024,
     texts: Mapping[str, str] | None = None,
+    files: WholeFiles | None = None,
 ) -> Iterator[Show]:
     """Yield ``show(pixels, colour_space, gain)``; the picture appears when the block ends.
 
     Parameters and errors are those of `write_preview`, with texts that the file shall
-    hold beside the picture.
+    hold beside the picture, and the files that it shall appear with.
     """
     check_preview(path, view)
-    with replace_when_whole(path) as temporary:
+    with ExitStack() as stack:
+        whole_files = stack.enter_context(WholeFiles()) if files is None else files
+        temporary = whole_files.add(path)
 
         def show(pixels: npt.NDArray[np.float32], colour_space: Tagged, gain: float) -> None:
             exposed = _shrink(pixels, max_width) * np.float32(gain)
-            _write_png(path, temporary, display_values(exposed, colour_space, view), texts)
+            with faults_of(path):
+                _write_png(path, temporary, display_values(exposed, colour_space, view), texts)
 
         yield show
 

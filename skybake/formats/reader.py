@@ -12,7 +12,7 @@ import OpenImageIO
 
 from skybake.errors import InputError
 from skybake.formats.hdr import RADIANCE_EFFICACY, read_header
-from skybake.formats.partial import is_utf8
+from skybake.formats.targets import is_utf8
 
 _BAND_ROWS = 256
 _FORMATS = {".exr": "openexr", ".hdr": "hdr", ".png": "png"}

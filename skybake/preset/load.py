@@ -19,7 +19,7 @@ from skybake.preset.section import Gather, Section
 MAX_CONSTITUENTS = 16
 """More than any known sky needs, few enough for kernels to hold in registers and cache."""
 
-MAX_WAVELENGTHS = 256
+MAX_WAVELENGTHS = 128
 """Tables of the air take room and time for each."""
 
 VISIBLE = (380.0, 720.0)

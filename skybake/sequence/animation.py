@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.errors import InputError
-from skybake.formats.partial import check_target, replace_when_whole, write_error
+from skybake.formats.targets import check_target, write_error
+from skybake.formats.whole_files import replace_when_whole
 
 if TYPE_CHECKING:
     from PIL.Image import Image

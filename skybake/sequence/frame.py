@@ -20,8 +20,8 @@ from skybake.baking.show import scene_ev, thumbnail
 from skybake.baking.write import bake_scene
 from skybake.colour.exposure import ev_from_luminance
 from skybake.errors import InputError
-from skybake.formats.partial import remove_leftovers
 from skybake.formats.reader import read_whole_attributes
+from skybake.formats.whole_files import remove_leftovers
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.preset import Planet
 from skybake.sequence.plan import Frame

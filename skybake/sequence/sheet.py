@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from skybake.errors import InputError
 from skybake.formats.lettering import draw_text, text_width
-from skybake.formats.partial import check_target
 from skybake.formats.preview import write_picture
+from skybake.formats.targets import check_target
 
 Picture = npt.NDArray[np.uint8]
 

@@ -150,7 +150,7 @@ def test_faulty_directions_are_one_line_with_their_place(text, message, tmp_path
         ),
         (1, ("--directions", "."), ".: must be a regular file, got a folder"),
         (1, ("--wavelengths", "680,200"), "got 200"),
-        (2, ("--wavelengths", ",".join(map(str, range(400, 657)))), "must be at most 256, got 257"),
+        (2, ("--wavelengths", ",".join(map(str, range(400, 529)))), "must be at most 128, got 129"),
         (2, ("--output", "sky.exr"), "sky.exr: suffix must be .csv, got '.exr'"),
         (2, ("--wavelengths", "red"), "must be as 680,550,440 in nm, got 'red'"),
         (2, ("--wavelengths", "-550"), "must be as 680,550,440 in nm, got '-550'"),

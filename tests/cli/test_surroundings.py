@@ -93,6 +93,39 @@ def test_without_standard_output_the_program_ends_in_peace(arguments):
     assert (status, output, errors) == (0, "", "")
 
 
+@pytest.mark.usefixtures("warm")
+@pytest.mark.parametrize("closed", ["2>&-", ">&-", "<&- >&- 2>&-"])
+@pytest.mark.parametrize("command", ["render", "sequence --frames 1-2"])
+def test_with_closed_streams_maps_are_baked(tmp_path, closed, command):
+    expected = render(tmp_path / "expected.exr", *SMALL)
+    name = "a.#.exr" if "frames" in command else "a.exr"
+    code = "from skybake.cli import run; run()"
+    line = f"exec {sys.executable} -c '{code}' {command} {' '.join(SMALL)} -o '{name}' {closed}"
+    result = subprocess.run(
+        ["sh", "-c", line],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": PACKAGES},
+        capture_output=True,
+        check=False,
+        timeout=240,
+    )
+    assert result.returncode == 0
+    found = sorted(tmp_path.glob("a.*exr"))
+    assert len(found) == (2 if "frames" in command else 1)
+    assert {path.read_bytes() for path in found} == {expected}
+
+
+def test_with_closed_streams_a_fault_has_its_status():
+    command = f"exec {sys.executable} -c 'from skybake.cli import run; run()' presets show vulcan"
+    result = subprocess.run(
+        ["sh", "-c", f"{command} 2>&-"],
+        env=os.environ | {"PYTHONPATH": PACKAGES},
+        capture_output=True,
+        check=False,
+    )
+    assert (result.returncode, result.stdout) == (1, b"")
+
+
 def test_a_full_disk_below_standard_output_is_one_line():
     with Path("/dev/full").open("w") as full:
         status, _, errors = run("presets", "show", "mars", stdout=full)
