@@ -11,6 +11,7 @@ import numpy.typing as npt
 import OpenImageIO
 
 from skybake.errors import InputError
+from skybake.formats.shrink import shrunk
 from skybake.formats.spec import Tagged
 from skybake.formats.targets import check_target, faults_of, write_error
 from skybake.formats.whole_files import WholeFiles, replace_when_whole
@@ -27,6 +28,8 @@ VIEWS = tuple(_VIEWS)
 """Display transforms by name; the first is the default."""
 
 Show = Callable[[npt.NDArray[np.float32], Tagged, float], None]
+
+_WHITE = np.float32(1e30)
 
 _END_OF_PNG = b"IEND\xaeB`\x82"
 
@@ -101,7 +104,9 @@ def open_preview(
         temporary = whole_files.add(path)
 
         def show(pixels: npt.NDArray[np.float32], colour_space: Tagged, gain: float) -> None:
-            exposed = _shrink(pixels, max_width) * np.float32(gain)
+            # Beyond that all is white, and infinity would become anything.
+            with np.errstate(over="ignore"):
+                exposed = np.clip(shrunk(pixels, max_width) * np.float32(gain), -_WHITE, _WHITE)
             with faults_of(path):
                 _write_png(path, temporary, display_values(exposed, colour_space, view), texts)
 
@@ -165,21 +170,6 @@ def _write_png(
     # The library's last block can fail to reach a full disk without a word.
     if not written or message or not temporary.read_bytes().endswith(_END_OF_PNG):
         raise write_error(path, temporary, message)
-
-
-def _shrink(pixels: npt.NDArray[np.float32], max_width: int) -> npt.NDArray[np.float32]:
-    """Average to at most a width; a triangle is positive, so the sun does not ring."""
-    height, width = pixels.shape[:2]
-    if width <= max_width:
-        return pixels
-    # Without memory for its copy of them the library divides by zero, which ends the process.
-    np.empty_like(pixels)
-    size = OpenImageIO.ROI(0, max_width, 0, max(1, round(height * max_width / width)), 0, 1, 0, 3)
-    source = OpenImageIO.ImageBuf(np.ascontiguousarray(pixels))
-    smaller = OpenImageIO.ImageBufAlgo.resize(source, filtername="triangle", roi=size)
-    if smaller.has_error:
-        raise RuntimeError(f"resize must succeed, got {smaller.geterror()}")
-    return _pixels(smaller)
 
 
 def _pixels(image: OpenImageIO.ImageBuf) -> npt.NDArray[np.float32]:

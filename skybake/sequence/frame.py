@@ -20,7 +20,7 @@ from skybake.baking.show import scene_ev, thumbnail
 from skybake.baking.write import bake_scene
 from skybake.colour.exposure import ev_from_luminance
 from skybake.errors import InputError
-from skybake.formats.reader import read_whole_attributes
+from skybake.formats.reader import read_attributes
 from skybake.formats.whole_files import remove_leftovers
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.preset import Planet
@@ -180,7 +180,7 @@ def _light_of_file(path: Path, wanted: Mapping[str, str]) -> Light | None:
 def _attributes_with(wanted: Mapping[str, str], path: Path) -> dict[str, Any] | None:
     """Return the attributes of a file if it is whole and says what is wanted, else None."""
     try:
-        attributes = read_whole_attributes(path)
+        attributes = read_attributes(path)
     except (InputError, OSError):
         return None
     return attributes if wanted.items() <= attributes.items() else None
