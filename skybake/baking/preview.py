@@ -186,5 +186,5 @@ def _numbers(where: str, value: Any, count: int) -> tuple[float, ...]:
     is_right = len(values) == count and all(isinstance(one, int | float) for one in values)
     if not is_right or not all(math.isfinite(one) for one in values):
         kind = "a number" if count == 1 else f"{count} numbers"
-        raise InputError(f"{where}: must be {kind}, got {value!r}")
+        raise InputError(f"{where}: must be {kind}, got {' '.join(repr(value).split())}")
     return tuple(map(float, values))

@@ -26,6 +26,7 @@ from skybake.sequence.manifest import (
 from skybake.sequence.plan import Frame, Plan
 from skybake.sequence.run import Result
 from skybake.sequence.sheet import TILE_WIDTH, check_sheet, contact_sheet
+from skybake.sequence.thumbnails import Thumbnails
 from skybake.sequence.usd import check_usd, write_usd
 
 
@@ -47,6 +48,8 @@ class Products:
         self._sheet: Path | None = options["contact_sheet"]
         self._animation: Path | None = options["animate"]
         self._curve: Path | None = options["exposure_curve"]
+        pictures = [path for path in (self._animation, self._sheet) if path is not None]
+        self._thumbnails = Thumbnails(pictures[0].parent if pictures else Path())
         self._header = _header(plan, options["fps"], arguments(context, HOW))
 
     @property
@@ -54,6 +57,10 @@ class Products:
         """All files."""
         pictures = (self._animation, self._sheet)
         return [*self._manifests, *(path for path in pictures if path is not None)]
+
+    def keep(self, outcome: Outcome) -> Outcome:
+        """Take the thumbnails of a frame, and return it without them."""
+        return self._thumbnails.keep(outcome)
 
     def check(self) -> None:
         """Raise what can be said of the files before anything is computed.
@@ -93,11 +100,12 @@ class Products:
                 write_usd(path, self._header, records)
             else:
                 write_manifest(path, self._header, records)
+        numbers = [outcome.number for outcome in outcomes]
         if self._animation is not None:
-            stills = [outcome.thumbnails[STILL_WIDTH] for outcome in outcomes]
+            stills = self._thumbnails.pictures(STILL_WIDTH, numbers)
             write_animation(self._animation, stills, self._header.fps)
         if self._sheet is not None:
-            tiles = [outcome.thumbnails[TILE_WIDTH] for outcome in outcomes]
+            tiles = self._thumbnails.pictures(TILE_WIDTH, numbers)
             labels = [_label(frames[outcome.number]) for outcome in outcomes]
             contact_sheet(self._sheet, tiles, labels, title=self._plan.planets[0].title)
         return self.paths

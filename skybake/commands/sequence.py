@@ -157,7 +157,7 @@ SOME_FAILED = 3
 @click.option(
     "--skip-existing",
     is_flag=True,
-    help="Leave frames alone whose files are whole and of the same recipe.",
+    help="Leave frames alone whose files are as they were written for the same frame.",
 )
 @click.option(
     "--retry",
@@ -228,7 +228,7 @@ def sequence(**options: Any) -> None:
     view = options["view"] or parameters.VIEWS[0]
     part.check(view, products.paths)
     products.check()
-    result = _bake(plan, part, view, options)
+    result = _bake(plan, part, view, products, options)
     if result.failures:
         outcome.print_failures(result, openjd=options["style"] == "openjd")
     written = _write_products(products, result)
@@ -265,7 +265,7 @@ def _write_products(products: Products, result: Result) -> list[Path]:
         return []
 
 
-def _bake(plan: Plan, part: Plan, view: str, options: dict[str, Any]) -> Result:
+def _bake(plan: Plan, part: Plan, view: str, products: Products, options: dict[str, Any]) -> Result:
     from skybake.baking import companion
     from skybake.sequence.run import bake_sequence
 
@@ -277,7 +277,7 @@ def _bake(plan: Plan, part: Plan, view: str, options: dict[str, Any]) -> Result:
         _pool(plan, part, view, options) as run,
         progress.progress(options["style"], len(part.frames), quiet=quiet) as tell,
     ):
-        return bake_sequence(part, run, retries=options["retry"], tell=tell)
+        return bake_sequence(part, run, retries=options["retry"], tell=tell, keep=products.keep)
 
 
 def _pool(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
@@ -72,8 +72,19 @@ def write_preview(
         show(pixels, colour_space, gain)
 
 
-def write_picture(path: Path, pixels: npt.NDArray[np.uint8]) -> None:
-    """Write code values of sRGB, shape (row, column, 3), as PNG.
+def write_picture(
+    path: Path, width: int, height: int, bands: Iterable[npt.NDArray[np.uint8]]
+) -> None:
+    """Write code values of sRGB as PNG.
+
+    Parameters
+    ----------
+    path : Path
+        ``.png``.
+    width, height : int
+        Size of the picture. [pixel]
+    bands : iterable of ndarray of uint8, shape (row, width, 3)
+        Rows after rows, from top to bottom.
 
     Raises
     ------
@@ -81,7 +92,7 @@ def write_picture(path: Path, pixels: npt.NDArray[np.uint8]) -> None:
         If the file cannot be written.
     """
     with replace_when_whole(path) as temporary:
-        _write_png(path, temporary, pixels)
+        _write_png(path, temporary, (width, height), bands)
 
 
 @contextmanager
@@ -108,7 +119,9 @@ def open_preview(
             with np.errstate(over="ignore"):
                 exposed = np.clip(shrunk(pixels, max_width) * np.float32(gain), -_WHITE, _WHITE)
             with faults_of(path):
-                _write_png(path, temporary, display_values(exposed, colour_space, view), texts)
+                shown = display_values(exposed, colour_space, view)
+                size = (shown.shape[1], shown.shape[0])
+                _write_png(path, temporary, size, [shown], texts)
 
         yield show
 
@@ -153,10 +166,11 @@ def display_values(
 def _write_png(
     path: Path,
     temporary: Path,
-    shown: npt.NDArray[np.float32] | npt.NDArray[np.uint8],
+    size: tuple[int, int],
+    bands: Iterable[npt.NDArray[np.float32]] | Iterable[npt.NDArray[np.uint8]],
     texts: Mapping[str, str] | None = None,
 ) -> None:
-    spec = OpenImageIO.ImageSpec(shown.shape[1], shown.shape[0], 3, "uint8")
+    spec = OpenImageIO.ImageSpec(*size, 3, "uint8")
     for name, text in (texts or {}).items():
         spec[name] = text
     spec["oiio:ColorSpace"] = "srgb_rec709_display"
@@ -164,7 +178,11 @@ def _write_png(
     output = OpenImageIO.ImageOutput.create(str(temporary))
     if output is None:
         raise write_error(path, temporary, OpenImageIO.geterror())
-    written = output.open(str(temporary), spec) and output.write_image(shown)
+    written, row = output.open(str(temporary), spec), 0
+    for band in bands:
+        last = row + len(band)
+        written = written and output.write_scanlines(row, last, 0, np.ascontiguousarray(band))
+        row = last
     output.close()
     message = output.geterror()
     # The library's last block can fail to reach a full disk without a word.

@@ -55,7 +55,12 @@ class Result:
 
 
 def bake_sequence(
-    plan: Plan, run: Run, *, retries: int = 0, tell: Callable[[Event], None] = lambda _: None
+    plan: Plan,
+    run: Run,
+    *,
+    retries: int = 0,
+    tell: Callable[[Event], None] = lambda _: None,
+    keep: Callable[[Outcome], Outcome] = lambda outcome: outcome,
 ) -> Result:
     """Bake the frames of a plan.
 
@@ -69,6 +74,8 @@ def bake_sequence(
         How often a frame that failed is tried again, after all others.
     tell : callable, optional
         Called with each `Event`.
+    keep : callable, optional
+        Called with each `Outcome`, returns what of it is kept until the end.
     """
     outcomes: list[Outcome] = []
     failures: dict[int, str] = {}
@@ -82,7 +89,7 @@ def bake_sequence(
             kind: Literal["baked", "skipped", "failed", "retried"]
             if isinstance(outcome, Outcome):
                 kind = "baked" if outcome.is_new else "skipped"
-                outcomes.append(outcome)
+                outcomes.append(keep(outcome))
                 failures.pop(frame.number, None)
             else:
                 kind = "failed" if attempt == retries else "retried"
