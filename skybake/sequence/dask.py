@@ -56,7 +56,7 @@ def dask_pool(plan: Plan, look: Look, address: str) -> Iterator[Run]:
 
     Notes
     -----
-    The world and the tables of its air, 8 MB, are sent to each worker once; a frame is
+    The world and the tables of its air, 14 MB, are sent to each worker once; a frame is
     half a kilobyte each way beside its thumbnails. A frame whose worker dies goes to
     another one.
     """

@@ -22,6 +22,8 @@ FOLDER = ".skybake-digests"
 
 _LARGEST = 1 << 16
 _CLAIM = "# claim "
+_SUFFIX = ".sha256"
+_LONGEST_NAME = 255
 
 
 def claim_of(recipe_hash: str, attributes: Mapping[str, Any]) -> str:
@@ -97,7 +99,10 @@ def verified_digests(output: Path, claim: str, files: Iterable[Path]) -> dict[Pa
 
 
 def _path(output: Path) -> Path:
-    return output.parent / FOLDER / output.name
+    name = f"{output.name}{_SUFFIX}"
+    if len(os.fsencode(name)) > _LONGEST_NAME:
+        name = f"{hashlib.sha256(os.fsencode(output.name)).hexdigest()}{_SUFFIX}"
+    return output.parent / FOLDER / name
 
 
 def _name(path: Path, file: Path) -> str:
