@@ -18,11 +18,15 @@ import click
 from skybake.commands.advice import advised
 from skybake.commands.memory import memory_text
 from skybake.errors import SkybakeError
+from skybake.formats.held_signals import wait_until_released
 from skybake.version import __version__
 
 FAILED = 1
 INTERRUPTED = 130
 ENDED_BY_SIGNAL = 128
+
+_STANDARD_ERROR = 2
+_RENAMED_WITHIN = 10.0
 
 _ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
 
@@ -134,7 +138,8 @@ def _exit_now(status: int) -> NoReturn:
 
 
 def _leave(status: int) -> NoReturn:
-    """End the process without the interpreter's clean-up."""
+    """End the process without the interpreter's clean-up, but not between two renames of a set."""
+    wait_until_released(_RENAMED_WITHIN)
     for stream in sys.stdout, sys.stderr:
         try:
             if stream is not None:
@@ -142,6 +147,19 @@ def _leave(status: int) -> NoReturn:
         except OSError:
             status = status or FAILED
     os._exit(status)
+
+
+def _open_standard_streams() -> None:
+    """Let nothing take the place of closed standard streams, least of all a file to write."""
+    while True:
+        descriptor = os.open(os.devnull, os.O_RDWR)
+        if descriptor > _STANDARD_ERROR:
+            os.close(descriptor)
+            break
+    for descriptor, name in enumerate(("stdin", "stdout", "stderr")):
+        if getattr(sys, name) is None:
+            mode = "w" if descriptor else "r"
+            setattr(sys, name, os.fdopen(descriptor, mode, encoding="utf-8", closefd=False))
 
 
 def _show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
@@ -175,6 +193,7 @@ def run() -> NoReturn:
     where numba is among them.
     """
     status: Any = 0
+    _open_standard_streams()
     try:
         main()
     except SystemExit as leaving:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from skybake.formats.reader import read_whole_attributes
+from skybake.formats.reader import read_image
 from tests.cli.runs import installed
 
 TEXT = (Path(__file__).parents[1] / "docs" / "sequences.md").read_text("utf-8")
@@ -77,7 +77,7 @@ def test_every_command_of_the_document_runs(shell, script):
     made = sorted(shell.folder.rglob("*"))
     for path in made:
         if path.suffix == ".exr":
-            read_whole_attributes(path)
+            read_image(path)
     frames = [path for path in made if path.suffix == ".exr"]
     if "--dry-run" in script:
         assert not made

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -10,22 +11,33 @@ import numpy.typing as npt
 
 from skybake.colour.exposure import auto_ev, luminance_from_ev
 from skybake.colour.space import ColourSpace, colour_space_from_tags, luminance_weights
+from skybake.errors import InputError
 from skybake.formats.preview import check_preview, write_preview
-from skybake.formats.reader import read_image
+from skybake.formats.reader import ImageFile
+from skybake.formats.shrink import Shrinking
 from skybake.projection import cubemap, equirect
+
+Pixels = npt.NDArray[np.float32]
 
 SURVEY_ROWS = 256
 """Rows of an equirect map that an exposure is chosen from; of larger ones texels are left out."""
 
 SURVEY_EDGE = 128
 
+MAX_WIDTH = 1024
+"""Of pictures of maps; larger maps are made smaller. [pixel]"""
+
+_CHROMATICITIES = 8
+
+# From what no sensor sees to what is brighter than any star's surface.
+_DARKEST_WHITE = 1e-9
+_BRIGHTEST_WHITE = 1e15
+
 # A file that does not say what its values mean is shown as if 1.0 were EV 15's white.
 UNKNOWN_WHITE = luminance_from_ev(15.0)
 
 
-def legible_ev(
-    pixels: npt.NDArray[np.float32], space: ColourSpace, white_luminance: float
-) -> float:
+def legible_ev(pixels: Pixels, space: ColourSpace, white_luminance: float) -> float:
     """Exposure value at which a map is legible, see `skybake.colour.exposure.auto_ev`.
 
     Parameters
@@ -38,49 +50,76 @@ def legible_ev(
     white_luminance : float
         Luminance that RGB (1, 1, 1) stands for. [cd m⁻²]
     """
+    height, width = pixels.shape[:2]
+    return _ev_of_survey(pixels[_survey_rows(width, height)], height, space, white_luminance)
+
+
+def _survey_rows(width: int, height: int) -> npt.NDArray[np.int64]:
+    """Rows of a picture that its exposure is chosen from, ascending."""
+    edge = _edge(width, height)
+    if not edge:
+        return _steps(height, SURVEY_ROWS)
+    upright = _steps(edge, SURVEY_EDGE)
+    if height != 6 * width:
+        return np.concatenate([origin * edge + upright for origin in range(height // edge)])
+    upside_down = (edge - 1 - upright)[::-1]
+    return np.concatenate(
+        [
+            i * edge + (upside_down if cubemap.openexr_flip(face) == "rows" else upright)
+            for i, face in enumerate(cubemap.FACES)
+        ]
+    )
+
+
+def _edge(width: int, height: int) -> int:
+    """Edge of the faces of a cubemap in one picture; 0 of another picture."""
+    if height == 6 * width:
+        return width
+    return width // 4 if 4 * height == 3 * width and width % 4 == 0 else 0
+
+
+def _steps(count: int, wanted: int) -> npt.NDArray[np.int64]:
+    """Return indices of some of many rows or columns, evenly spread."""
+    step = max(1, count // wanted)
+    return np.arange(step // 2, count, step)
+
+
+def _ev_of_survey(rows: Pixels, height: int, space: ColourSpace, white_luminance: float) -> float:
+    """Exposure value of a picture of a height, of which these are the `_survey_rows`."""
     weights = luminance_weights(space) * white_luminance
-    rows, columns = pixels.shape[:2]
-    faces = _faces(pixels)
-    if faces:
-        step = max(1, len(faces["px"]) // SURVEY_EDGE)
-        sample = np.stack([_every(step, face) for face in faces.values()])
-        edge = sample.shape[1]
-        above = [cubemap.face_directions(face, edge)[..., 1] > 0.0 for face in faces]
-        return auto_ev(_luminance(sample, weights), cubemap.solid_angles(edge), np.stack(above))
-    sample = _every(max(1, rows // SURVEY_ROWS), pixels)
-    if columns != 2 * rows:
+    width = rows.shape[1]
+    edge = _edge(width, height)
+    if edge:
+        columns = _steps(edge, SURVEY_EDGE)
+        faces = _faces(rows, edge, len(columns))
+        sample = np.stack([face[:, columns] for face in faces.values()])
+        small = sample.shape[1]
+        above = [cubemap.face_directions(face, small)[..., 1] > 0.0 for face in faces]
+        return auto_ev(_luminance(sample, weights), cubemap.solid_angles(small), np.stack(above))
+    step = max(1, height // SURVEY_ROWS)
+    sample = rows[:, step // 2 :: step]
+    if width != 2 * height:
         return auto_ev(_luminance(sample, weights))
     zenith = equirect.row_zeniths(len(sample))[:, None]
     # A map of one row has its middle on the horizon.
     return auto_ev(_luminance(sample, weights), np.sin(zenith), zenith <= np.pi / 2.0)
 
 
-def _faces(pixels: npt.NDArray[np.float32]) -> dict[str, npt.NDArray[np.float32]]:
-    """Return the faces of a cubemap in one picture by name; none of another picture."""
-    rows, columns = pixels.shape[:2]
-    if 4 * rows == 3 * columns and columns % 4 == 0:
-        edge = columns // 4
+def _faces(rows: Pixels, edge: int, count: int) -> dict[str, Pixels]:
+    """Return the faces of a cubemap by name, of each as many rows and all columns."""
+    if rows.shape[1] == 4 * edge:
         return {
-            face: pixels[row * edge : (row + 1) * edge, column * edge : (column + 1) * edge]
+            face: rows[row * count : (row + 1) * count, column * edge : (column + 1) * edge]
             for face, (row, column) in cubemap.CROSS_ORIGINS.items()
         }
-    if rows == 6 * columns:
-        faces = pixels.reshape(6, columns, columns, 3)
-        # Mirrored twice, a face is as it was.
-        return {
-            name: cubemap.openexr_face(name, face).astype(np.float32, copy=False)
-            for name, face in zip(cubemap.FACES, faces, strict=True)
-        }
-    return {}
+    # Mirrored twice, a face is as it was.
+    return {
+        name: cubemap.openexr_face(name, face).astype(np.float32, copy=False)
+        for name, face in zip(cubemap.FACES, rows.reshape(6, count, edge, 3), strict=True)
+    }
 
 
-def _every(step: int, pixels: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
-    return pixels[step // 2 :: step, step // 2 :: step]
-
-
-def _luminance(
-    pixels: npt.NDArray[np.float32], weights: npt.NDArray[np.float64]
-) -> npt.NDArray[np.float64]:
+def _luminance(pixels: Pixels, weights: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     luminance: npt.NDArray[np.float64] = np.maximum(pixels @ weights, 0.0)
     return luminance
 
@@ -109,11 +148,43 @@ def preview_file(
         If the picture cannot be written.
     """
     check_preview(path, view)
-    pixels, attributes = read_image(source)
-    chromaticities: Any = attributes.get("chromaticities")
-    space = colour_space_from_tags(str(source), attributes.get("colorInteropID"), chromaticities)
-    white = float(attributes.get("whiteLuminance", UNKNOWN_WHITE))
+    image = ImageFile(source)
+    space, white = _scale(source, image.attributes)
+    wanted = _survey_rows(image.width, image.height)
+    survey: list[Pixels] = []
+    picture = Shrinking(image.width, image.height, MAX_WIDTH)
+    first = 0
+    for rows in image.bands():
+        here = (wanted >= first) & (wanted < first + len(rows))
+        survey.append(rows[wanted[here] - first])
+        picture.add(rows)
+        first += len(rows)
     if ev is None:
-        ev = legible_ev(pixels, space, white)
-    write_preview(path, pixels, space, gain=white / luminance_from_ev(ev), view=view)
+        ev = _ev_of_survey(np.concatenate(survey), image.height, space, white)
+    write_preview(path, picture.result(), space, gain=white / luminance_from_ev(ev), view=view)
     return ev
+
+
+def _scale(source: Path, attributes: dict[str, Any]) -> tuple[ColourSpace, float]:
+    """Return the space of a file's pixels, and the luminance of 1."""
+    chromaticities = attributes.get("chromaticities")
+    if chromaticities is not None:
+        chromaticities = _numbers(f"{source}: chromaticities", chromaticities, _CHROMATICITIES)
+    name = attributes.get("colorInteropID")
+    space = colour_space_from_tags(str(source), None if name is None else str(name), chromaticities)
+    where = f"{source}: whiteLuminance"
+    (white,) = _numbers(where, attributes.get("whiteLuminance", UNKNOWN_WHITE), 1)
+    if not _DARKEST_WHITE <= white <= _BRIGHTEST_WHITE:
+        raise InputError(
+            f"{where}: must be from {_DARKEST_WHITE:g} to {_BRIGHTEST_WHITE:g} cd/m2, got {white:g}"
+        )
+    return space, white
+
+
+def _numbers(where: str, value: Any, count: int) -> tuple[float, ...]:
+    values = value if isinstance(value, tuple) else (value,)
+    is_right = len(values) == count and all(isinstance(one, int | float) for one in values)
+    if not is_right or not all(math.isfinite(one) for one in values):
+        kind = "a number" if count == 1 else f"{count} numbers"
+        raise InputError(f"{where}: must be {kind}, got {' '.join(repr(value).split())}")
+    return tuple(map(float, values))

@@ -16,6 +16,7 @@ from skybake.baking.paths import default_path, map_paths
 from skybake.formats.preview import check_preview, open_preview
 from skybake.formats.scanlines import Rows
 from skybake.formats.spec import Attribute, MapSpec
+from skybake.formats.whole_files import WholeFiles
 from skybake.formats.writer import MapWriter, check_map_path, open_maps
 from skybake.image.light import Light, attributes_from_light, light_of_scene
 from skybake.image.picture import PREVIEW_WIDTH, SURVEY_ROWS, scene_ev, show_scene
@@ -183,17 +184,19 @@ def bake_scene(
         for path, raster in rasters.items()
     }
     with ExitStack() as stack:
-        # Everything is written before anything takes its name: all files appear, or none.
+        files = stack.enter_context(WholeFiles())
         draw = None
         if preview is not None:
             preview_ev = scene_ev(scene) if preview_ev is None else preview_ev
             texts = preview_texts(planet, settings, preview_ev, preview_view)
             small = settings.view.projection.smaller(PREVIEW_WIDTH).canvases()[0]
             show = stack.enter_context(
-                open_preview(preview, view=preview_view, max_width=small.width, texts=texts)
+                open_preview(
+                    preview, view=preview_view, max_width=small.width, texts=texts, files=files
+                )
             )
             draw = partial(show_scene, scene, show, preview_ev)
-        writers = stack.enter_context(open_maps(specs))
+        writers = stack.enter_context(open_maps(specs, files))
         _write(rasters, writers, scene.workers, progress)
         if draw is not None:
             draw()

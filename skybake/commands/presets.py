@@ -111,7 +111,8 @@ def new(name: str, base: str) -> None:
       skybake presets new dusk --from earth
       skybake render --preset dusk.toml
     """
-    from skybake.formats.partial import check_target, replace_when_whole
+    from skybake.formats.targets import check_target
+    from skybake.formats.whole_files import replace_when_whole
     from skybake.preset import preset_template
 
     text = preset_template(name.removesuffix(".toml"), base)

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import io
 import sys
 from pathlib import Path
 from typing import Any
 
 import click
 
+from skybake import input_files
 from skybake.commands.memory import check_memory
 from skybake.commands.options import values
 from skybake.commands.options.observer import altitude_option, sun_option
 from skybake.commands.options.world import world_from_options, world_options
-from skybake.errors import InputError
+
+_MOST_WAVELENGTHS = 128
 
 
 def _wavelengths(text: str) -> tuple[float, ...]:
@@ -22,6 +25,8 @@ def _wavelengths(text: str) -> tuple[float, ...]:
         wavelengths = ()
     if not wavelengths or not all(0.0 < value < 1e6 for value in wavelengths):
         raise click.BadParameter(f"must be wavelengths in nm such as 680,550,440, got {text!r}")
+    if len(wavelengths) > _MOST_WAVELENGTHS:
+        raise click.BadParameter(f"must be at most {_MOST_WAVELENGTHS}, got {len(wavelengths)}")
     return wavelengths
 
 
@@ -67,6 +72,7 @@ def _wavelengths(text: str) -> tuple[float, ...]:
     *("-o", "--output"),
     metavar="FILE.csv",
     type=click.Path(path_type=Path),
+    callback=values.with_suffix(".csv"),
     show_default="standard output",
     help="CSV to write.",
 )
@@ -87,7 +93,7 @@ def probe(**options: Any) -> None:
 
     import numpy as np
 
-    from skybake.formats.partial import replace_when_whole
+    from skybake.formats.whole_files import replace_when_whole
     from skybake.inspect.probe import default_directions, probe, read_directions
 
     planet = world_from_options(click.get_current_context())
@@ -95,14 +101,12 @@ def probe(**options: Any) -> None:
     if source is None:
         directions = default_directions(options["sun_elevation"])
     elif str(source) == "-":
-        directions = read_directions("standard input", sys.stdin)
+        where = "standard input"
+        text = input_files.read_stream(sys.stdin, where, input_files.LARGEST_DIRECTIONS)
+        directions = read_directions(where, io.StringIO(text, newline=""))
     else:
-        try:
-            with source.open(newline="", encoding="utf-8") as lines:
-                directions = read_directions(str(source), lines)
-        except (OSError, UnicodeDecodeError) as error:
-            reason = getattr(error, "strerror", None) or "not text"
-            raise InputError(f"{source}: must be a readable CSV file, got {reason}") from error
+        text = input_files.read_text(source, str(source), input_files.LARGEST_DIRECTIONS)
+        directions = read_directions(str(source), io.StringIO(text, newline=""))
     wavelengths = options["wavelengths"]
     text = probe(
         planet,

@@ -78,7 +78,7 @@ SOME_FAILED = 3
 @click.option(
     "--skip-existing",
     is_flag=True,
-    help="Skip frames whose files are whole and were baked from the same recipe.",
+    help="Skip frames whose files are as they were written for the same frame.",
 )
 @click.option(
     "--retry",
@@ -242,7 +242,7 @@ def _bake(plan: Plan, part: Plan, products: Products, options: Mapping[str, Any]
         ) as run,
         frame_progress(options["style"], len(part.frames), quiet=quiet) as tell,
     ):
-        return bake_frames(part, run, retries=options["retry"], tell=tell)
+        return bake_frames(part, run, retries=options["retry"], tell=tell, keep=products.keep)
 
 
 def _write_products(products: Products, result: SequenceResult) -> list[Path]:

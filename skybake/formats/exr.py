@@ -10,9 +10,11 @@ import OpenImageIO
 
 from skybake.errors import OutputError
 from skybake.formats.compression import ZIP_LEVEL, largest_value, parse_compression
+from skybake.formats.exr_chunks import find_chunk_fault
 from skybake.formats.half import half_rows
 from skybake.formats.scanlines import Rows, ScanlineWriter
 from skybake.formats.spec import UNDATED, Attribute, MapSpec
+from skybake.formats.targets import write_error
 from skybake.jit.workers import ALL_CPUS, Workers
 
 # Only this name becomes OpenEXR's `envmap`; under the name `envmap` OpenImageIO would
@@ -51,6 +53,13 @@ class ExrWriter(ScanlineWriter):
         if not largest <= self._largest:
             self._check_range(rows)
         return ready
+
+    def check_whole(self) -> None:
+        """Check what readers do not, and read the last row back."""
+        fault = find_chunk_fault(self._temporary, self._height)
+        if fault is not None:
+            raise write_error(self._path, self._temporary, fault)
+        super().check_whole()
 
     def _check_range(self, rows: Rows) -> None:
         """Refuse what would come back as infinity; OpenImageIO stores it without a word."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 from pathlib import Path
-from types import TracebackType
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +22,8 @@ _LARGEST = 2.0**126
 _EXPONENT_BITS = 0x7F800000
 _HALF_STEP_BITS = 0x8000
 _COMMENT_LENGTH = 72
+# OpenImageIO refuses a header of more than a hundred lines, and writes some itself.
+_MOST_LINES = 90
 _SMALLEST_STEP = np.float32(2.0**-120)
 
 
@@ -53,20 +54,20 @@ class HdrWriter(ScanlineWriter):
     def __init__(self, path: Path, temporary: Path, spec: MapSpec) -> None:
         if len(spec.channels) != 3 or spec.colour_space.interop_id == "lin_ciexyzd65_scene":
             raise InputError(f"{path}: a Radiance picture must hold RGB, got other channels")
+        self._header = header_lines(spec)
+        count = self._header.count(b"\n")
+        if count > _MOST_LINES:
+            raise InputError(
+                f"{path}: attributes must fit into {_MOST_LINES} lines of a Radiance header, "
+                f"got {count}"
+            )
         header = OpenImageIO.ImageSpec(spec.width, spec.height, 3, "float")
         super().__init__(path, temporary, header)
-        self._header = header_lines(spec)
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        """Close the file, and put in the header lines that OpenImageIO leaves out."""
-        super().__exit__(kind, error, trace)
-        if kind is None:
-            _insert_after_first_line(self._temporary, self._header)
+    def check_whole(self) -> None:
+        """Put in the header lines that OpenImageIO leaves out, and read the last row back."""
+        _insert_after_first_line(self._temporary, self._header)
+        super().check_whole()
 
     def ready(self, rows: Rows, _workers: Workers = ALL_CPUS) -> Rows:
         """Check that rows are finite, and round them to what the format holds."""

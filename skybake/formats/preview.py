@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -12,8 +12,10 @@ import numpy.typing as npt
 import OpenImageIO
 
 from skybake.errors import InputError
-from skybake.formats.partial import check_target, replace_when_whole, write_error
+from skybake.formats.shrink import shrunk
 from skybake.formats.spec import Tagged
+from skybake.formats.targets import check_target, faults_of, write_error
+from skybake.formats.whole_files import WholeFiles, replace_when_whole
 
 # Named, because the defaults of OpenColorIO follow $OCIO and the version of the library.
 _VIEWS = {
@@ -27,6 +29,8 @@ VIEWS = tuple(_VIEWS)
 """Display transforms by name; the first is the default."""
 
 Show = Callable[[npt.NDArray[np.float32], Tagged, float], None]
+
+_WHITE = np.float32(1e30)
 
 _END_OF_PNG = b"IEND\xaeB`\x82"
 
@@ -69,8 +73,19 @@ def write_preview(
         show(pixels, colour_space, gain)
 
 
-def write_picture(path: Path, pixels: npt.NDArray[np.uint8]) -> None:
-    """Write code values of sRGB, shape (row, column, 3), as PNG.
+def write_picture(
+    path: Path, width: int, height: int, bands: Iterable[npt.NDArray[np.uint8]]
+) -> None:
+    """Write code values of sRGB as PNG.
+
+    Parameters
+    ----------
+    path : Path
+        ``.png``.
+    width, height : int
+        Size of the picture. [pixel]
+    bands : iterable of ndarray of uint8, shape (row, width, 3)
+        Rows after rows, from top to bottom.
 
     Raises
     ------
@@ -78,7 +93,7 @@ def write_picture(path: Path, pixels: npt.NDArray[np.uint8]) -> None:
         If the file cannot be written.
     """
     with replace_when_whole(path) as temporary:
-        _write_png(path, temporary, pixels)
+        _write_png(path, temporary, (width, height), bands)
 
 
 @contextmanager
@@ -88,18 +103,26 @@ def open_preview(
     view: str = "aces2",
     max_width: int = 1024,
     texts: Mapping[str, str] | None = None,
+    files: WholeFiles | None = None,
 ) -> Iterator[Show]:
     """Yield ``show(pixels, colour_space, gain)``; the picture appears when the block ends.
 
     Parameters and errors are those of `write_preview`, with texts that the file shall
-    hold beside the picture.
+    hold beside the picture, and the files that it shall appear with.
     """
     check_preview(path, view)
-    with replace_when_whole(path) as temporary:
+    with ExitStack() as stack:
+        whole_files = stack.enter_context(WholeFiles()) if files is None else files
+        temporary = whole_files.add(path)
 
         def show(pixels: npt.NDArray[np.float32], colour_space: Tagged, gain: float) -> None:
-            exposed = _shrink(pixels, max_width) * np.float32(gain)
-            _write_png(path, temporary, display_values(exposed, colour_space, view), texts)
+            # Beyond that all is white, and infinity would become anything.
+            with np.errstate(over="ignore"):
+                exposed = np.clip(shrunk(pixels, max_width) * np.float32(gain), -_WHITE, _WHITE)
+            with faults_of(path):
+                shown = display_values(exposed, colour_space, view)
+                size = (shown.shape[1], shown.shape[0])
+                _write_png(path, temporary, size, [shown], texts)
 
         yield show
 
@@ -144,10 +167,11 @@ def display_values(
 def _write_png(
     path: Path,
     temporary: Path,
-    shown: npt.NDArray[np.float32] | npt.NDArray[np.uint8],
+    size: tuple[int, int],
+    bands: Iterable[npt.NDArray[np.float32]] | Iterable[npt.NDArray[np.uint8]],
     texts: Mapping[str, str] | None = None,
 ) -> None:
-    spec = OpenImageIO.ImageSpec(shown.shape[1], shown.shape[0], 3, "uint8")
+    spec = OpenImageIO.ImageSpec(*size, 3, "uint8")
     for name, text in (texts or {}).items():
         spec[name] = text
     spec["oiio:ColorSpace"] = "srgb_rec709_display"
@@ -155,27 +179,16 @@ def _write_png(
     output = OpenImageIO.ImageOutput.create(str(temporary))
     if output is None:
         raise write_error(path, temporary, OpenImageIO.geterror())
-    written = output.open(str(temporary), spec) and output.write_image(shown)
+    written, row = output.open(str(temporary), spec), 0
+    for band in bands:
+        last = row + len(band)
+        written = written and output.write_scanlines(row, last, 0, np.ascontiguousarray(band))
+        row = last
     output.close()
     message = output.geterror()
     # The library's last block can fail to reach a full disk without a word.
     if not written or message or not temporary.read_bytes().endswith(_END_OF_PNG):
         raise write_error(path, temporary, message)
-
-
-def _shrink(pixels: npt.NDArray[np.float32], max_width: int) -> npt.NDArray[np.float32]:
-    """Average to at most a width; a triangle is positive, so the sun does not ring."""
-    height, width = pixels.shape[:2]
-    if width <= max_width:
-        return pixels
-    # Without memory for its copy of them the library divides by zero, which ends the process.
-    np.empty_like(pixels)
-    size = OpenImageIO.ROI(0, max_width, 0, max(1, round(height * max_width / width)), 0, 1, 0, 3)
-    source = OpenImageIO.ImageBuf(np.ascontiguousarray(pixels))
-    smaller = OpenImageIO.ImageBufAlgo.resize(source, filtername="triangle", roi=size)
-    if smaller.has_error:
-        raise RuntimeError(f"resize must succeed, got {smaller.geterror()}")
-    return _pixels(smaller)
 
 
 def _pixels(image: OpenImageIO.ImageBuf) -> npt.NDArray[np.float32]:
@@ -186,5 +199,6 @@ def png_bytes(pixels: npt.NDArray[np.uint8]) -> bytes:
     """Return the content of a PNG file of code values of sRGB, shape (row, column, 3)."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "picture.png"
-        _write_png(path, path, np.ascontiguousarray(pixels))
+        height, width = pixels.shape[:2]
+        _write_png(path, path, (width, height), [np.ascontiguousarray(pixels)])
         return path.read_bytes()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -12,24 +14,26 @@ import OpenImageIO
 
 from skybake.errors import InputError
 from skybake.formats.hdr import RADIANCE_EFFICACY, read_header
-from skybake.formats.partial import is_utf8
+from skybake.formats.targets import is_utf8
+
+Pixels = npt.NDArray[np.float32]
 
 _BAND_ROWS = 256
 _FORMATS = {".exr": "openexr", ".hdr": "hdr", ".png": "png"}
 
 
-def read_image(path: Path) -> tuple[npt.NDArray[np.float32], dict[str, Any]]:
-    """Read the R, G and B of a scene-linear image.
+class ImageFile:
+    """A scene-linear image that is read from top to bottom.
 
     Parameters
     ----------
     path : Path
         Any image of half or float pixels that OpenImageIO reads.
 
-    Returns
-    -------
-    pixels : ndarray of float32, shape (row, column, 3)
-        As stored, finite.
+    Attributes
+    ----------
+    width, height : int
+        Its size. [pixel]
     attributes : dict
         By the file's own names; of a Radiance picture also `chromaticities` and
         `whiteLuminance` where its header implies them.
@@ -37,54 +41,94 @@ def read_image(path: Path) -> tuple[npt.NDArray[np.float32], dict[str, Any]]:
     Raises
     ------
     InputError
-        If the file is missing, damaged, of integers, without R, G, B, or not finite.
+        If the file is missing, damaged, of integers, or without R, G, B.
     """
-    source = _open(path)
-    spec = source.spec()
-    names = [name.upper() for name in spec.channelnames]
-    if spec.format.basetype not in {OpenImageIO.HALF, OpenImageIO.FLOAT}:
-        raise InputError(f"{path}: pixels must be half or float, got {spec.format}")
-    if names[:3] != ["R", "G", "B"]:
-        raise InputError(f"{path}: channels must be R, G, B, got {', '.join(spec.channelnames)}")
-    pixels = None
-    with suppress(RuntimeError):
-        pixels = source.read_image(0, 0, 0, 3, OpenImageIO.FLOAT)
-    if pixels is None:
-        raise InputError(f"{path}: must be whole, got {_first_line(source.geterror())}")
-    source.close()
-    if not np.isfinite(pixels).all():
-        raise InputError(f"{path}: pixels must be finite, got NaN or infinity")
-    return pixels, _attributes(path, source)
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._source = _open(path)
+        spec = self._source.spec()
+        names = [name.upper() for name in spec.channelnames]
+        if spec.format.basetype not in {OpenImageIO.HALF, OpenImageIO.FLOAT}:
+            raise InputError(f"{path}: pixels must be half or float, got {spec.format}")
+        if names[:3] != ["R", "G", "B"]:
+            found = _printable(", ".join(spec.channelnames))
+            raise InputError(f"{path}: channels must be R, G, B, got {found}")
+        self.width: int = spec.width
+        self.height: int = spec.height
+        self.attributes = _attributes(path, self._source)
+
+    def bands(self) -> Iterator[Pixels]:
+        """Yield R, G and B of some rows after others, shape (row, width, 3), finite.
+
+        Raises
+        ------
+        InputError
+            If the file is damaged or a value is not finite.
+        """
+        for first in range(0, self.height, _BAND_ROWS):
+            last = min(first + _BAND_ROWS, self.height)
+            rows = None
+            with suppress(RuntimeError):
+                rows = self._read(first, last)
+            if rows is None:
+                raise InputError(f"{self._path}: must be whole, got {_reason(self._source)}")
+            if not np.isfinite(rows).all():
+                raise InputError(f"{self._path}: pixels must be finite, got NaN or infinity")
+            yield rows
+        self._source.close()
+
+    def _read(self, first: int, last: int) -> Pixels | None:
+        spec = self._source.spec()
+        if not spec.tile_width:
+            top = spec.y
+            rows: Pixels | None = self._source.read_scanlines(
+                top + first, top + last, 0, 0, 3, OpenImageIO.FLOAT
+            )
+            return rows
+        return self._read_tiles(spec, first, last)
+
+    def _read_tiles(self, spec: OpenImageIO.ImageSpec, first: int, last: int) -> Pixels | None:
+        # Whole rows of tiles, of which the rows are then taken.
+        height = spec.tile_height
+        top, bottom = first // height * height, min(-(-last // height) * height, spec.height)
+        columns, rows = (spec.x, spec.x + spec.width), (spec.y + top, spec.y + bottom)
+        tiles = self._source.read_tiles(*columns, *rows, 0, 1, 0, 3, OpenImageIO.FLOAT)
+        return None if tiles is None else tiles[first - top : last - top]
 
 
-def read_whole_attributes(path: Path) -> dict[str, Any]:
-    """Return the attributes of a map or a preview, after reading all of its rows.
+def read_image(path: Path) -> tuple[Pixels, dict[str, Any]]:
+    """Read all of a scene-linear image.
 
-    They are as of `read_image`.
+    Returns
+    -------
+    pixels : ndarray of float32, shape (row, column, 3)
+        As stored, finite.
+    attributes : dict
+        As of `ImageFile`.
 
     Raises
     ------
     InputError
-        If the file is missing, damaged, or not what its suffix says.
+        As `ImageFile`.
+    """
+    image = ImageFile(path)
+    return np.concatenate(list(image.bands())), image.attributes
+
+
+def read_attributes(path: Path) -> dict[str, Any]:
+    """Return the attributes of a map or a preview, as of `ImageFile`.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, damaged at its head, or not what its suffix says.
     """
     source = _open(path)
     if source.format_name() != _FORMATS.get(path.suffix.lower()):
         raise InputError(f"{path}: must be what its suffix says, got {source.format_name()}")
-    if not _can_read_rows(source):
-        raise InputError(f"{path}: must be whole, got {_first_line(source.geterror())}")
     source.close()
     return _attributes(path, source)
-
-
-def _can_read_rows(source: OpenImageIO.ImageInput) -> bool:
-    spec = source.spec()
-    with suppress(RuntimeError):
-        return all(
-            source.read_scanlines(first, min(first + _BAND_ROWS, spec.height), 0, 0, spec.nchannels)
-            is not None
-            for first in range(0, spec.height, _BAND_ROWS)
-        )
-    return False
 
 
 def _open(path: Path) -> OpenImageIO.ImageInput:
@@ -94,7 +138,7 @@ def _open(path: Path) -> OpenImageIO.ImageInput:
         raise InputError(f"{path}: must be UTF-8, got bytes that are not")
     source = OpenImageIO.ImageInput.open(str(path))
     if source is None:
-        raise InputError(f"{path}: must be an image, got {_first_line(OpenImageIO.geterror())}")
+        raise InputError(f"{path}: must be an image, got {_reason(OpenImageIO)}")
     return source
 
 
@@ -113,6 +157,8 @@ def _radiance_attributes(path: Path) -> dict[str, Any]:
         primaries = tuple(float(v) for v in header.get("PRIMARIES", "").split())
     except ValueError as error:
         raise InputError(f"{path}: EXPOSURE and PRIMARIES must be numbers, got {error}") from error
+    if not 0.0 <= exposure < math.inf:
+        raise InputError(f"{path}: EXPOSURE must be at least 0 and finite, got {exposure:g}")
     attributes: dict[str, Any] = dict(header)
     # Some programs write EXPOSURE=0 where they mean that they do not know it.
     if exposure > 0.0:
@@ -126,5 +172,14 @@ def _what_instead(path: Path) -> str:
     return "a folder" if path.is_dir() else "nothing" if not path.exists() else "a device or pipe"
 
 
-def _first_line(message: str) -> str:
-    return message.strip().partition("\n")[0] or "an unknown error"
+def _reason(source: Any) -> str:
+    """First line of what the library says, which may repeat bytes of a file."""
+    try:
+        message = source.geterror()
+    except UnicodeDecodeError:
+        return "a header that is not UTF-8"
+    return _printable(message.strip().partition("\n")[0]) or "an unknown error"
+
+
+def _printable(text: str) -> str:
+    return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in text)

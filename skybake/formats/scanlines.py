@@ -13,7 +13,7 @@ import OpenImageIO
 
 from skybake.errors import OutputError
 from skybake.formats.fork import end_threads_before_forks
-from skybake.formats.partial import write_error
+from skybake.formats.targets import faults_of, write_error
 from skybake.jit.workers import ALL_CPUS, Workers
 
 Rows = npt.NDArray[np.float32] | npt.NDArray[np.float16]
@@ -82,7 +82,8 @@ class ScanlineWriter:
             raise write_error(self._path, self._temporary, message)
         if self._next_row != self._height:
             raise ValueError(f"rows must be written to {self._height}, got {self._next_row}")
-        self._check_last_row()
+        with faults_of(self._path):
+            self.check_whole()
 
     def write_rows(self, y_begin: int, y_end: int, rows: Rows) -> None:
         """Write rows `y_begin` to `y_end`, the latter excluded, shape (row, column, channel)."""
@@ -106,7 +107,7 @@ class ScanlineWriter:
             raise self._failed
         self._next_row = y_end
 
-    def _check_last_row(self) -> None:
+    def check_whole(self) -> None:
         """Read the last row back: the write of the last block fails silently on a full disk."""
         source = OpenImageIO.ImageInput.open(str(self._temporary))
         if source is None:

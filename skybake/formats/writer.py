@@ -9,8 +9,9 @@ from pathlib import Path
 from skybake.errors import InputError
 from skybake.formats.exr import ExrWriter
 from skybake.formats.hdr import HdrWriter
-from skybake.formats.partial import check_target, replace_when_whole
 from skybake.formats.spec import MapSpec
+from skybake.formats.targets import check_target
+from skybake.formats.whole_files import WholeFiles
 
 MapWriter = ExrWriter | HdrWriter
 
@@ -48,13 +49,18 @@ def open_map(path: Path, spec: MapSpec) -> Iterator[MapWriter]:
 
 
 @contextmanager
-def open_maps(specs: Mapping[Path, MapSpec]) -> Iterator[dict[Path, MapWriter]]:
+def open_maps(
+    specs: Mapping[Path, MapSpec], files: WholeFiles | None = None
+) -> Iterator[dict[Path, MapWriter]]:
     """Open several map files, which appear when all of them are written.
 
     Parameters
     ----------
     specs : mapping of Path to MapSpec
         The files, see `open_map`.
+    files : WholeFiles, optional
+        What else they shall appear with, and when; by default they appear when the
+        block ends.
 
     Yields
     ------
@@ -68,14 +74,15 @@ def open_maps(specs: Mapping[Path, MapSpec]) -> Iterator[dict[Path, MapWriter]]:
     """
     for path in specs:
         check_map_path(path)
-    # Left in reverse: every file is closed and found whole before the first takes its name.
-    with ExitStack() as targets, ExitStack() as files:
+    with ExitStack() as stack:
+        whole_files = stack.enter_context(WholeFiles()) if files is None else files
+        # Left in reverse: every file is closed and found whole before the first takes its name.
         writers: dict[Path, MapWriter] = {}
         for path, spec in specs.items():
-            temporary = targets.enter_context(replace_when_whole(path))
+            temporary = whole_files.add(path)
             writer: MapWriter = _WRITERS[path.suffix.lower()](path, temporary, spec)
             writers[path] = writer
-            files.enter_context(writer)
+            stack.enter_context(writer)
         yield writers
 
 

@@ -13,10 +13,28 @@ from skybake.version import __version__
 
 HASH_ATTRIBUTE = "skybake:recipeHash"
 
+LONGEST_RECIPE = 4000
+"""Length of a recipe's text in a file. OpenImageIO opens no Radiance picture with a hundred
+lines in its header, and FFmpeg 5.1 loses its way behind a text of 8191 bytes. [character]"""
+
 
 def map_recipe(planet: Planet, settings: MapSettings) -> dict[str, Any]:
     """Return the recipe of a map, fit for JSON."""
     return {"map": settings.recipe(), "preset": planet.recipe}
+
+
+def recipe_text(planet: Planet, settings: MapSettings) -> str:
+    """Return the recipe of a map as JSON that every reader of its files takes.
+
+    Of a preset that makes it longer than `LONGEST_RECIPE`, as inline spectra do, only the
+    digest stands there: SHA-256 of its JSON with sorted keys, as a manifest has it whole.
+    """
+    recipe = map_recipe(planet, settings)
+    text = json.dumps(recipe)
+    if len(text) <= LONGEST_RECIPE:
+        return text
+    digest = hashlib.sha256(json.dumps(planet.recipe, sort_keys=True).encode()).hexdigest()
+    return json.dumps({"map": recipe["map"], "preset": {"sha256": digest}})
 
 
 def recipe_hash(planet: Planet, settings: MapSettings) -> str:
@@ -29,7 +47,7 @@ def recipe_attributes(planet: Planet, settings: MapSettings) -> dict[str, Attrib
     """Return the attributes of a map's files."""
     return {
         "skybake:preset": planet.name,
-        "skybake:recipe": json.dumps(map_recipe(planet, settings)),
+        "skybake:recipe": recipe_text(planet, settings),
         HASH_ATTRIBUTE: recipe_hash(planet, settings),
     }
 

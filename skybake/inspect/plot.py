@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from skybake.formats.partial import replace_when_whole
+from skybake.formats.whole_files import replace_when_whole
 from skybake.optics.medium import Medium, altitude_nodes, build_medium
 from skybake.optics.phase import scattering_angles
 from skybake.preset import Planet

@@ -11,7 +11,7 @@ from typing import Any
 
 from skybake.errors import PresetError
 from skybake.preset.document import Document, Key, Source, dotted
-from skybake.preset.find import display_name, find_preset, is_path, preset_names, read_text
+from skybake.preset.find import display_name, find_preset, is_path, preset_names, read_preset
 from skybake.preset.message import nearest, shown
 
 TOP_KEYS = (
@@ -122,7 +122,7 @@ def _base(path: Path, where: str, base: Any) -> Path:
         raise PresetError(f"{where}: must be a preset's name or a file, got {shown(base)}")
     if is_path(base):
         file = path.parent / base
-        read_text(file, f"{where}: {shown(base)}")
+        read_preset(file, f"{where}: {shown(base)}")
         return file
     try:
         return find_preset(base)
@@ -131,7 +131,7 @@ def _base(path: Path, where: str, base: Any) -> Path:
 
 
 def _parse(path: Path, where: str) -> dict[str, Any]:
-    text = read_text(path, where)
+    text = read_preset(path, where)
     file = display_name(path)
     try:
         return tomllib.loads(text)

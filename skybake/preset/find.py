@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from skybake.errors import PresetError
+from skybake import input_files
+from skybake.errors import InputError, PresetError
 from skybake.preset.message import shown
 
 _PACKAGE = Path(__file__).resolve().parents[1]
@@ -23,7 +24,7 @@ def preset_text(name: str) -> str:
     PresetError
         If there is none of that name; the message lists the known ones.
     """
-    return read_text(find_preset(name), name)
+    return read_preset(find_preset(name), name)
 
 
 def find_preset(name_or_path: str | Path) -> Path:
@@ -63,16 +64,12 @@ def display_name(path: Path) -> str:
     return path.name if path.parent == _folder() else str(path)
 
 
-def read_text(path: Path, where: str) -> str:
-    """Read a text file; a fault is a PresetError of one line that starts with `where`."""
+def read_preset(path: Path, where: str) -> str:
+    """Read the text of a preset; a fault is a PresetError of one line that starts with `where`."""
     try:
-        return path.read_text(encoding="utf-8-sig")  # spreadsheets write a byte order mark
-    except OSError as error:
-        raise PresetError(f"{where}: cannot be read: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise PresetError(f"{where}: must be UTF-8 text") from error
-    except ValueError as error:
-        raise PresetError(f"{where}: cannot be read: {error}") from error
+        return input_files.read_text(path, where, input_files.LARGEST_PRESET)
+    except InputError as error:
+        raise PresetError(str(error)) from error
 
 
 def _folder() -> Path:

@@ -19,6 +19,9 @@ from skybake.preset.section import Gather, Section
 MAX_CONSTITUENTS = 16
 """More than any known sky needs, few enough for kernels to hold in registers and cache."""
 
+MAX_WAVELENGTHS = 128
+"""Tables of the air take room and time for each."""
+
 VISIBLE = (380.0, 720.0)
 """What spectra must cover, unless the preset chooses its wavelengths. [nm]"""
 
@@ -118,6 +121,8 @@ def _read_wavelengths(top: Section, rendering: str) -> tuple[float, ...] | None:
     wavelengths = top.numbers("wavelengths_nm", 100.0, 1e5) if top.has("wavelengths_nm") else None
     if rendering == "rgb" and (wavelengths is None or len(wavelengths) != 3):
         top.fail("wavelengths_nm", "rendering = 'rgb' needs three: for red, green and blue")
+    if wavelengths and len(wavelengths) > MAX_WAVELENGTHS:
+        top.fail("wavelengths_nm", f"must be at most {MAX_WAVELENGTHS}, got {len(wavelengths)}")
     if wavelengths and len(set(wavelengths)) < len(wavelengths):
         top.fail("wavelengths_nm", "must differ from each other")
     return wavelengths

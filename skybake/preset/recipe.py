@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from copy import deepcopy
-from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
 from skybake.preset.document import Document
-from skybake.preset.tables import is_user_file
+from skybake.preset.tables import file_digest, is_user_file
 
 _TEXTS = ("title", "data_quality")
 
@@ -35,7 +34,7 @@ def recipe_of(document: Document, folder: Path) -> dict[str, Any]:
         for part in key[:-1]:
             table = table[part]
         table[key[-1]] = name
-        digests[name] = sha256(file.read_bytes()).hexdigest()
+        digests[name] = file_digest(file)
     if digests:
         recipe["files"] = digests
     if document.changes:

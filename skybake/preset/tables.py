@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 import os
+from hashlib import sha256
 from pathlib import Path
 
-from skybake.errors import PresetError
+from skybake import input_files
+from skybake.errors import InputError, PresetError
 from skybake.preset.document import Source
-from skybake.preset.find import read_text
 from skybake.preset.message import shown
 
 _DATA = Path(__file__).resolve().parents[1] / "data"
@@ -48,7 +49,7 @@ def load_table(name: str, where: str, source: Source, column: str) -> dict[str, 
         where = f"{where}: {shown(name)}"
         if source.is_file and Path(os.path.normpath(name)).parts[0] == os.pardir:
             raise PresetError(f"{where}: must lie in the preset's folder or be an absolute path")
-        return _parse(where, read_text(source.folder / name, where))
+        return _parse(where, _read(source.folder / name, where))
     if name not in {path.stem for path in _DATA.glob("*.csv")}:
         columns = table_columns()
         known = ", ".join(one for one in columns if column in columns[one])
@@ -56,7 +57,22 @@ def load_table(name: str, where: str, source: Source, column: str) -> dict[str, 
             f"{where}: unknown table {shown(name)}; tables with a column {column}: "
             f"{known or 'none'}; a file of your own needs the ending .csv"
         )
-    return _parse(where, read_text(_DATA / f"{name}.csv", where))
+    return _parse(where, _read(_DATA / f"{name}.csv", where))
+
+
+def file_digest(path: Path) -> str:
+    """SHA-256 of a table of the user's, in hexadecimal digits.
+
+    Raises
+    ------
+    PresetError
+        If it cannot be read.
+    """
+    try:
+        content = input_files.read_bytes(path, str(path), input_files.LARGEST_TABLE)
+    except InputError as error:
+        raise PresetError(str(error)) from error
+    return sha256(content).hexdigest()
 
 
 def table_columns() -> dict[str, list[str]]:
@@ -65,6 +81,13 @@ def table_columns() -> dict[str, list[str]]:
         path.stem: _lines(path.read_text(encoding="utf-8"))[0].split(",")
         for path in sorted(_DATA.glob("*.csv"))
     }
+
+
+def _read(path: Path, where: str) -> str:
+    try:
+        return input_files.read_text(path, where, input_files.LARGEST_TABLE)
+    except InputError as error:
+        raise PresetError(str(error)) from error
 
 
 def _lines(text: str) -> list[str]:

@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.errors import InputError
-from skybake.formats.partial import check_target, replace_when_whole, write_error
+from skybake.formats.targets import check_target, write_error
+from skybake.formats.whole_files import replace_when_whole
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -85,14 +86,12 @@ def write_animation(path: Path, thumbnails: Sequence[Picture], fps: float) -> No
         As `check_animation`, or if the file cannot be written.
     """
     check_animation(path, fps)
-    from PIL import Image
-
     kind = _KINDS[path.suffix.lower()]
     if kind is _KINDS[".gif"]:
         palette = _common_palette(thumbnails)
         first, *others = [_dithered(thumbnail, palette) for thumbnail in thumbnails]
     else:
-        first, *others = [Image.fromarray(thumbnail) for thumbnail in thumbnails]
+        first, others = _film(thumbnails), []
     with replace_when_whole(path) as temporary:
         try:
             first.save(
@@ -105,6 +104,31 @@ def write_animation(path: Path, thumbnails: Sequence[Picture], fps: float) -> No
             )
         except RuntimeError as error:
             raise write_error(path, temporary, str(error)) from error
+
+
+def _film(thumbnails: Sequence[Picture]) -> Image:
+    """Return a picture of many frames, of which one is in memory."""
+    from PIL import Image
+
+    class Film(Image.Image):
+        """Frames as Pillow's writers ask for those of a file."""
+
+        def __init__(self) -> None:
+            super().__init__()
+            self.n_frames = len(thumbnails)
+            self.seek(0)
+
+        def seek(self, frame: int) -> None:
+            """Go to a frame."""
+            still = Image.fromarray(thumbnails[frame])
+            self.im, self._mode, self._size = still.im, still.mode, still.size
+            self._frame = frame
+
+        def tell(self) -> int:
+            """Return which frame it is at."""
+            return self._frame
+
+    return Film()
 
 
 def _durations(count: int, fps: float, tick: int) -> list[int]:

@@ -82,7 +82,13 @@ def bake_sequence(
         dask=dask,
         notice=notice,
     ) as run:
-        return bake_frames(part, run, retries=retries, tell=tell or (lambda _: None))
+        return bake_frames(
+            part,
+            run,
+            retries=retries,
+            tell=tell or (lambda _: None),
+            keep=(lambda outcome: outcome) if products is None else products.keep,
+        )
 
 
 def check_sequence(part: Plan, products: Products | None, view: str) -> None:

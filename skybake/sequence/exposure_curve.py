@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import csv
+import io
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
+from skybake import input_files
 from skybake.errors import InputError
 
 _LOWEST, _HIGHEST = -30.0, 40.0
@@ -80,13 +82,12 @@ class ExposureCurve:
 
 
 def _rows(path: Path) -> list[Mapping[str, str | None]]:
+    text = input_files.read_text(path, str(path), input_files.LARGEST_TABLE)
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            reader = csv.DictReader(file)
-            columns, rows = list(reader.fieldnames or ()), list(reader)
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise InputError(f"{path}: cannot be read as a CSV file ({reason})") from error
+        reader = csv.DictReader(io.StringIO(text, newline=""))
+        columns, rows = list(reader.fieldnames or ()), list(reader)
+    except csv.Error as error:
+        raise InputError(f"{path}: cannot be read as a CSV file ({error})") from error
     if columns.count("frame") != 1 or columns.count("ev") != 1:
         found = ", ".join(columns) or "nothing"
         raise InputError(f"{path}: must hold the columns frame and ev, got {found}")

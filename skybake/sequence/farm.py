@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from skybake.errors import InputError, OutputError
-from skybake.formats.partial import replace_when_whole
+from skybake.formats.whole_files import replace_when_whole
 from skybake.sequence.frames import chunks, format_frames
 from skybake.sequence.text import is_plain_line
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,14 +15,15 @@ from skybake.baking.paths import map_paths
 from skybake.baking.write import bake_scene
 from skybake.colour.exposure import ev_from_luminance
 from skybake.errors import InputError
-from skybake.formats.partial import remove_leftovers
-from skybake.formats.reader import read_whole_attributes
+from skybake.formats.reader import read_attributes
+from skybake.formats.whole_files import remove_leftovers
 from skybake.image.light import Light, attributes_from_light, light_from_attributes
 from skybake.image.picture import scene_ev, thumbnail
-from skybake.image.recipe import HASH_ATTRIBUTE, preview_texts, recipe_hash
+from skybake.image.recipe import preview_texts, recipe_hash
 from skybake.image.scene import Scene
 from skybake.pipeline import Pipeline
 from skybake.preset import Planet
+from skybake.sequence.digests import claim_of, file_sha256, verified_digests, write_digests
 from skybake.sequence.plan import Frame
 
 
@@ -109,11 +109,11 @@ def finish_frame(
         If the pipeline's workers were stopped; no file is left then.
     """
     work = _Work(frame, planet, previews, pipeline)
-    light = work.found_light() if skip_existing else None
-    is_new = light is None
+    found = work.found() if skip_existing else None
+    is_new = found is None
     pipeline.workers.check()
     files = map_paths(frame.output, frame.settings)
-    if light is None:
+    if found is None:
         baked = bake_scene(
             work.scene,
             frame.output,
@@ -124,7 +124,10 @@ def finish_frame(
         )
         # As it will be when its files are found instead.
         light = light_from_attributes(attributes_from_light(baked))
+        digests = {path: file_sha256(path) for path in frame.files()}
+        write_digests(frame.output, work.claim, digests)
     else:
+        light, digests = found
         for path in frame.files():
             remove_leftovers(path)
     return FrameOutcome(
@@ -132,7 +135,7 @@ def finish_frame(
         is_new=is_new,
         light=light,
         files=files,
-        sha256=tuple(_sha256(path) for path in files),
+        sha256=tuple(digests[path] for path in files),
         ev=work.ev if frame.preview is not None else None,
         thumbnails={width: work.thumbnail(width) for width in previews.thumbnail_widths},
     )
@@ -163,42 +166,39 @@ class _Work:
             return ev_from_luminance(self._frame.settings.encoding.white_luminance)
         return scene_ev(self.scene)
 
-    def found_light(self) -> Light | None:
-        """Return the light of the files if they are whole and of this recipe, else None."""
-        planet, settings, preview = self._planet, self._frame.settings, self._frame.preview
-        wanted = {HASH_ATTRIBUTE: recipe_hash(planet, settings)}
-        light = None
-        for path in map_paths(self._frame.output, settings):
-            light = _light_of_file(path, wanted)
-            if light is None:
+    @cached_property
+    def claim(self) -> str:
+        """What the maps are to hold, see `claim_of`."""
+        return claim_of(recipe_hash(self._planet, self._frame.settings), self._frame.attributes)
+
+    def found(self) -> tuple[Light, dict[Path, str]] | None:
+        """Return light and digests of the files if they are as this frame's were written."""
+        frame, settings = self._frame, self._frame.settings
+        digests = verified_digests(frame.output, self.claim, frame.files())
+        if digests is None:
+            return None
+        if frame.preview is not None:
+            texts = preview_texts(self._planet, settings, self.ev, self._previews.view)
+            if not texts.items() <= (_attributes(frame.preview) or {}).items():
                 return None
-        if preview is not None:
-            texts = preview_texts(planet, settings, self.ev, self._previews.view)
-            if _attributes_with(texts, preview) is None:
-                return None
-        return light
+        light = _light_of_file(map_paths(frame.output, settings)[0])
+        return None if light is None else (light, digests)
 
     def thumbnail(self, width: int) -> npt.NDArray[np.uint8]:
         return thumbnail(self.scene, self.ev, self._previews.view, width)
 
 
-def _light_of_file(path: Path, wanted: Mapping[str, str]) -> Light | None:
-    attributes = _attributes_with(wanted, path)
+def _light_of_file(path: Path) -> Light | None:
+    attributes = _attributes(path)
     try:
         return None if attributes is None else light_from_attributes(attributes)
     except (KeyError, ValueError):
         return None
 
 
-def _attributes_with(wanted: Mapping[str, str], path: Path) -> dict[str, Any] | None:
-    """Return the attributes of a file if it is whole and says what is wanted, else None."""
+def _attributes(path: Path) -> dict[str, Any] | None:
+    """Return the attributes of a file if it can be read, else None."""
     try:
-        attributes = read_whole_attributes(path)
+        return read_attributes(path)
     except (InputError, OSError):
         return None
-    return attributes if wanted.items() <= attributes.items() else None
-
-
-def _sha256(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()

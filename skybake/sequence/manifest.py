@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from skybake.formats.partial import replace_when_whole
+from skybake.formats.whole_files import replace_when_whole
 from skybake.sequence.frames import format_frames
 from skybake.version import __version__
 

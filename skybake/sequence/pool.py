@@ -68,7 +68,8 @@ def local_pool(
             error = future.exception()
             if error is not None and not isinstance(error, Exception):
                 raise error
-            yield pending[future], error or future.result()
+            # Let go of it, since it holds the thumbnails of its frame.
+            yield pending.pop(future), error or future.result()
 
     try:
         yield run

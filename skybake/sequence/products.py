@@ -7,11 +7,12 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from skybake.errors import OutputError
-from skybake.formats.partial import check_target
+from skybake.formats.targets import check_target
 from skybake.sequence.animation import STILL_WIDTH, check_animation, write_animation
 from skybake.sequence.frame import FrameOutcome
 from skybake.sequence.frames import FramePattern
@@ -19,6 +20,7 @@ from skybake.sequence.manifest import FrameRecord, SequenceHeader, write_csv, wr
 from skybake.sequence.plan import Frame, Plan
 from skybake.sequence.run import SequenceResult
 from skybake.sequence.sheet import TILE_WIDTH, check_sheet, contact_sheet
+from skybake.sequence.thumbnails import Thumbnails
 from skybake.sequence.usd import check_usd, write_usd
 
 
@@ -50,6 +52,11 @@ class Products:
     fps: float = 24.0
     command: tuple[str, ...] = ()
 
+    @cached_property
+    def _thumbnails(self) -> Thumbnails:
+        pictures = [path for path in (self.animation, self.contact_sheet) if path is not None]
+        return Thumbnails(pictures[0].parent if pictures else Path())
+
     @property
     def paths(self) -> list[Path]:
         """All files."""
@@ -61,6 +68,10 @@ class Products:
         """Widths of the thumbnails of each frame that the pictures consist of. [pixel]"""
         widths = ((self.contact_sheet, TILE_WIDTH), (self.animation, STILL_WIDTH))
         return tuple(width for path, width in widths if path is not None)
+
+    def keep(self, outcome: FrameOutcome) -> FrameOutcome:
+        """Take the thumbnails of a frame, and return it without them."""
+        return self._thumbnails.keep(outcome)
 
     def check(self) -> None:
         """Raise what can be said of the files before anything is computed.
@@ -103,11 +114,12 @@ class Products:
                 write_usd(path, _header(self), records)
             else:
                 write_manifest(path, _header(self), records)
+        numbers = [outcome.number for outcome in outcomes]
         if self.animation is not None:
-            stills = [outcome.thumbnails[STILL_WIDTH] for outcome in outcomes]
+            stills = self._thumbnails.pictures(STILL_WIDTH, numbers)
             write_animation(self.animation, stills, self.fps)
         if self.contact_sheet is not None:
-            tiles = [outcome.thumbnails[TILE_WIDTH] for outcome in outcomes]
+            tiles = self._thumbnails.pictures(TILE_WIDTH, numbers)
             labels = [_tile_label(frames[outcome.number]) for outcome in outcomes]
             contact_sheet(self.contact_sheet, tiles, labels, title=self.plan.planets[0].title)
         return self.paths

@@ -55,7 +55,12 @@ class SequenceResult:
 
 
 def bake_frames(
-    plan: Plan, run: Run, *, retries: int = 0, tell: Callable[[FrameEvent], None] = lambda _: None
+    plan: Plan,
+    run: Run,
+    *,
+    retries: int = 0,
+    tell: Callable[[FrameEvent], None] = lambda _: None,
+    keep: Callable[[FrameOutcome], FrameOutcome] = lambda outcome: outcome,
 ) -> SequenceResult:
     """Bake the frames of a plan.
 
@@ -69,6 +74,8 @@ def bake_frames(
         How often a frame that failed is tried again, after all others.
     tell : callable, optional
         Called with each `FrameEvent`.
+    keep : callable, optional
+        Called with each `FrameOutcome`, returns what of it is kept until the end.
     """
     outcomes: list[FrameOutcome] = []
     failures: dict[int, str] = {}
@@ -82,7 +89,7 @@ def bake_frames(
             kind: Literal["baked", "skipped", "failed", "retried"]
             if isinstance(outcome, FrameOutcome):
                 kind = "baked" if outcome.is_new else "skipped"
-                outcomes.append(outcome)
+                outcomes.append(keep(outcome))
                 failures.pop(frame.number, None)
             else:
                 kind = "failed" if attempt == retries else "retried"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from skybake.errors import InputError
 from skybake.formats.lettering import draw_text, text_width
-from skybake.formats.partial import check_target
 from skybake.formats.preview import write_picture
+from skybake.formats.targets import check_target
 
 Picture = npt.NDArray[np.uint8]
 
@@ -75,19 +75,23 @@ def contact_sheet(
     height, width = thumbnails[0].shape[:2]
     columns = _columns(len(thumbnails), width / height)
     gap = max(2, width // 32)
-    tiles = [
-        np.vstack([thumbnail, strip])
-        for thumbnail, strip in zip(thumbnails, _strips(labels, width), strict=True)
-    ]
-    empty = np.full_like(tiles[0], BACKGROUND)
-    tiles += [empty] * (-len(tiles) % columns)
-    rows = [
-        _joined(tiles[first : first + columns], gap, axis=1)
-        for first in range(0, len(tiles), columns)
-    ]
-    sheet = _joined(rows, gap, axis=0)
-    (heading,) = _strips([title], sheet.shape[1], 1.5)
-    write_picture(path, _framed(np.vstack([heading, sheet]), gap))
+    size = _letters(labels, width)
+    rows = math.ceil(len(thumbnails) / columns)
+    total = columns * width + (columns - 1) * gap
+    heading = _strip(title, total, _letters([title], total, 1.5))
+    tile_height = height + _strip_height(size)
+
+    def bands() -> Iterator[Picture]:
+        yield _margins(heading, gap, above=gap)
+        for row in range(rows):
+            here = range(row * columns, min((row + 1) * columns, len(thumbnails)))
+            tiles = [np.vstack([thumbnails[i], _strip(labels[i], width, size)]) for i in here]
+            tiles += [np.full_like(tiles[0], BACKGROUND)] * (columns - len(tiles))
+            yield _margins(_joined(tiles, gap), gap, above=gap if row else 0)
+        yield np.full((gap, total + 2 * gap, 3), BACKGROUND, np.uint8)
+
+    sheet_height = gap + len(heading) + rows * tile_height + (rows - 1) * gap + gap
+    write_picture(path, total + 2 * gap, sheet_height, bands())
 
 
 def _columns(count: int, aspect: float) -> int:
@@ -99,29 +103,31 @@ def _columns(count: int, aspect: float) -> int:
     return min(range(1, count + 1), key=misfit)
 
 
-def _strips(texts: Iterable[str], width: int, larger: float = 1.0) -> list[Picture]:
-    """Lines of text of one size, each in a picture of a width."""
-    texts = list(texts)
+def _letters(texts: Iterable[str], width: int, larger: float = 1.0) -> int:
+    """Size of letters in which the longest of some texts fits into a width. [pixel]"""
     wanted = round(min(max(width / 14.0, _SMALLEST_LETTERS), _LARGEST_LETTERS) * larger)
     widest = max(text_width(text, wanted) for text in texts)
-    size = max(_SMALLEST_LETTERS, min(wanted, int(wanted * width / max(widest, 1))))
-    strips = []
-    for text in texts:
-        strip = np.full((math.ceil(size * _LINE_SPACING), width, 3), BACKGROUND, np.uint8)
-        draw_text(strip, text, 0, round(size * 1.1), size, _INK)
-        strips.append(strip)
-    return strips
+    return max(_SMALLEST_LETTERS, min(wanted, int(wanted * width / max(widest, 1))))
 
 
-def _joined(pictures: Sequence[Picture], gap: int, axis: int) -> Picture:
-    """Pictures in a row or a column with gaps between."""
-    shape = list(pictures[0].shape)
-    shape[axis] = gap
-    between = np.full(shape, BACKGROUND, np.uint8)
+def _strip_height(size: int) -> int:
+    return math.ceil(size * _LINE_SPACING)
+
+
+def _strip(text: str, width: int, size: int) -> Picture:
+    """Return a line of text in a picture of a width."""
+    strip = np.full((_strip_height(size), width, 3), BACKGROUND, np.uint8)
+    draw_text(strip, text, 0, round(size * 1.1), size, _INK)
+    return strip
+
+
+def _joined(pictures: Sequence[Picture], gap: int) -> Picture:
+    """Return pictures in a row with gaps between."""
+    between = np.full((len(pictures[0]), gap, 3), BACKGROUND, np.uint8)
     parts = [part for picture in pictures for part in (between, picture)]
-    return np.concatenate(parts[1:], axis=axis)
+    return np.concatenate(parts[1:], axis=1)
 
 
-def _framed(picture: Picture, gap: int) -> Picture:
-    edges = ((gap, gap), (gap, gap), (0, 0))
+def _margins(picture: Picture, gap: int, above: int) -> Picture:
+    edges = ((above, 0), (gap, gap), (0, 0))
     return np.pad(picture, edges, constant_values=BACKGROUND)

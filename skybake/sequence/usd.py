@@ -14,7 +14,8 @@ from pathlib import Path
 
 from skybake.colour.space import find_colour_space
 from skybake.errors import InputError
-from skybake.formats.partial import check_target, replace_when_whole
+from skybake.formats.targets import check_target
+from skybake.formats.whole_files import replace_when_whole
 from skybake.sequence.manifest import FrameRecord, SequenceHeader, ascending
 from skybake.sequence.text import is_plain_line
 

@@ -10,6 +10,7 @@ from click.testing import CliRunner
 
 import skybake
 from skybake.cli import main
+from skybake.sequence.digests import FOLDER as DIGESTS
 
 PACKAGES = str(Path(skybake.__file__).parents[1])
 SMALL = ("--size", "64x32")
@@ -82,5 +83,5 @@ def run_on_terminal(*arguments, **keywords):
 
 
 def listing(folder):
-    """Names in a folder, hidden ones too."""
-    return sorted(path.name for path in folder.iterdir())
+    """Names in a folder, hidden ones too, but for the digests of frames."""
+    return sorted(path.name for path in folder.iterdir() if path.name != DIGESTS)

@@ -39,7 +39,7 @@ def digests(pattern):
 
 def files(pattern):
     """Files of the current folder; there must be some."""
-    found = sorted(Path().glob(pattern))
+    found = sorted(path for path in Path().glob(pattern) if path.is_file())
     assert found
     return found
 

@@ -146,10 +146,12 @@ def test_faulty_directions_are_one_line_with_their_place(text, message, tmp_path
         (
             1,
             ("--directions", "nowhere.csv"),
-            "nowhere.csv: must be a readable CSV file, got No such",
+            "nowhere.csv: cannot be read: No such file",
         ),
-        (1, ("--directions", "."), ".: must be a readable CSV file, got Is a directory"),
+        (1, ("--directions", "."), ".: must be a regular file, got a folder"),
         (1, ("--wavelengths", "680,200"), "got 200"),
+        (2, ("--wavelengths", ",".join(map(str, range(400, 529)))), "must be at most 128, got 129"),
+        (2, ("--output", "sky.exr"), "sky.exr: suffix must be .csv, got '.exr'"),
         (2, ("--wavelengths", "red"), "must be wavelengths in nm such as 680,550,440, got 'red'"),
         (2, ("--wavelengths", "-550"), "must be wavelengths in nm such as 680,550,440, got '-550'"),
         (2, ("--wavelengths", "nan"), "must be wavelengths in nm such as 680,550,440, got 'nan'"),
@@ -171,4 +173,4 @@ def test_a_file_that_is_no_text_is_refused(tmp_path):
     path.write_bytes(b"\xff\xfe\x00")
     result = invoke("probe", *HILLAIRE, "--directions", path)
     assert result.exit_code == 1
-    assert result.stderr.strip().endswith(f"{path}: must be a readable CSV file, got not text")
+    assert result.stderr.strip().endswith(f"{path}: must be UTF-8 text")

@@ -108,7 +108,7 @@ FAILED = """
 --contact-sheet absent/a.png        => absent/a.png: folder must exist, got
 --animate absent/a.webp             => absent/a.webp: folder must exist, got
 --animate a.gif --fps 90            => a.gif: frames per second must be from 0.1 to 50, got 90
---exposure-curve absent.csv         => cannot be read as a CSV file (No such file or dir
+--exposure-curve absent.csv         => absent.csv: cannot be read: No such file or directory
 --projection cubemap --size 8 --manifest a.usda => a.usda: a dome light of USD needs maps of the
 -o \x01.#.exr --manifest a.usda      => a.usda: USD must be able to hold a file's name, got
 --manifest a.json --manifest ./a.json => a.json: two files would be written under this name
@@ -137,7 +137,7 @@ def test_what_cannot_be_done_is_one_line_exit_1_and_no_file(folder, arguments, m
         ("frame,ev\n1,41\n", "line 2: ev must be from -30 to 40, got 41"),
         ("frame,ev\n1,nan\n", "line 2: ev must be from -30 to 40, got nan"),
         ("frame,ev\n2,15\n1,14\n", "line 3: frames must ascend, got 1"),
-        (b"\xff\xfe\x00", "cannot be read as a CSV file ("),
+        (b"\xff\xfe\x00", "must be UTF-8 text"),
     ],
 )
 def test_a_faulty_exposure_curve_is_one_line(folder, content, message):

@@ -1,14 +1,17 @@
 """``skybake sequence --skip-existing``: what is left alone and what is baked again."""
 
 import hashlib
+import subprocess
 from pathlib import Path
 
 import OpenImageIO
 import pytest
 
 from skybake.formats.reader import read_image
+from skybake.sequence.digests import FOLDER as DIGESTS
+from skybake.sequence.digests import verified_digests
 from tests.cli.runs import invoke, listing
-from tests.cli.sequences import DAY, QUICK, THREE, digests, files, sequence
+from tests.cli.sequences import DAY, QUICK, THREE, attributes, digests, files, records, sequence
 
 pytestmark = pytest.mark.usefixtures("folder")
 
@@ -70,6 +73,8 @@ DAMAGES = {
     "last block lost": cut(0.97),
     "last byte lost": without_last,
     "a byte changed": flip(0.9),
+    "a byte of the header changed": flip(0.02),
+    "a byte more": lambda content: content + b"\0",
 }
 
 
@@ -84,6 +89,63 @@ def test_a_file_that_is_not_whole_is_baked_again(damage):
     told = sequence(*arguments, "--skip-existing")
     assert (told["baked"], told["skipped"]) == (1, 2)
     assert digests("*.exr") == before
+
+
+@pytest.mark.parametrize("suffix", ["exr", "hdr", "png"])
+def test_a_byte_changed_anywhere_is_noticed(suffix):
+    """Of two hundred places all over a file, with compressions that have no checksum."""
+    frame = [*DAY, "--frames", "1", "-o", "a.#.hdr" if suffix == "hdr" else "a.#.exr"]
+    frame += ["--preview"] if suffix == "png" else []
+    frame += ["--compression", "none"] if suffix != "hdr" else []
+    sequence(*frame)
+    path = Path(f"a.0001.{suffix}")
+    claim = (Path(DIGESTS) / f"a.0001.{'hdr' if suffix == 'hdr' else 'exr'}.sha256").read_text()
+    claim = claim.splitlines()[0].removeprefix("# claim ")
+    output = path.with_suffix(".hdr" if suffix == "hdr" else ".exr")
+    content = path.read_bytes()
+    assert verified_digests(output, claim, [path]) is not None
+    for at in range(0, len(content), max(1, len(content) // 200)):
+        path.write_bytes(content[:at] + bytes([content[at] ^ 1]) + content[at + 1 :])
+        assert verified_digests(output, claim, [path]) is None
+    path.write_bytes(content[:-1] + bytes([content[-1] ^ 1]))
+    assert sequence(*frame, "--skip-existing")["baked"] == 1
+    assert path.read_bytes() == content
+
+
+def test_files_without_their_digests_are_baked_again():
+    arguments = (*DAY, *THREE, "-o", "a.#.exr")
+    sequence(*arguments)
+    (Path(DIGESTS) / "a.0002.exr.sha256").unlink()
+    (Path(DIGESTS) / "a.0003.exr.sha256").write_bytes(b"\xff")
+    assert sequence(*arguments, "--skip-existing")["baked"] == 2
+    assert sequence(*arguments, "--skip-existing")["baked"] == 0
+
+
+def test_digests_are_as_sha256sum_checks_them():
+    sequence(*DAY, *THREE, "-o", "a.#.exr", "--preview")
+    names = sorted(path.name for path in Path(DIGESTS).iterdir())
+    assert names == [f"a.000{number}.exr.sha256" for number in (1, 2, 3)]
+    command = ["sha256sum", "--check", "--strict", "--quiet", *names]
+    assert subprocess.run(command, cwd=DIGESTS, check=False).returncode == 0
+
+
+def test_a_frame_of_another_time_of_the_same_light_is_baked_again():
+    """Its files tell the time, which no pixel does."""
+    time = ("--lat", "0", "--lon", "0", "--from", "2026-06-21T12:00Z", "--to", "2026-06-21T13:00Z")
+    arguments = ("--frames", "1-2", "-o", "a.#.exr")
+    sequence(*time, *arguments)
+    digests_before = digests("*.exr")
+    named = attributes("a.0001.exr")
+    suns = "..".join(f"{record['sun_elevation_deg']!r}deg" for record in records("a.sequence.json"))
+    bearings = "..".join(
+        f"{record['sun_azimuth_deg']!r}deg" for record in records("a.sequence.json")
+    )
+    told = sequence("--sun", suns, "--sun-azimuth", bearings, *arguments, "--skip-existing")
+    assert told["baked"] == 2
+    assert "skybake:time" in named
+    assert "skybake:time" not in attributes("a.0001.exr")
+    sequence(*time, *arguments, "--skip-existing")
+    assert digests("*.exr") == digests_before
 
 
 @pytest.mark.parametrize("damage", ["empty", "header only", "half", "last byte lost"])

@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import OpenImageIO
 import pytest
 
@@ -91,6 +92,39 @@ os.execv(sys.executable, [sys.executable, "-c", code, *sys.argv[1:]])
 def test_without_standard_output_the_program_ends_in_peace(arguments):
     status, output, errors = run(*arguments, code=CLOSED)
     assert (status, output, errors) == (0, "", "")
+
+
+@pytest.mark.usefixtures("warm")
+@pytest.mark.parametrize("closed", ["2>&-", ">&-", "<&- >&- 2>&-"])
+@pytest.mark.parametrize("command", ["render", "sequence --frames 1-2"])
+def test_with_closed_streams_maps_are_baked(tmp_path, closed, command):
+    expected = render(tmp_path / "expected.exr", *SMALL)
+    name = "a.#.exr" if "frames" in command else "a.exr"
+    code = "from skybake.cli import run; run()"
+    line = f"exec {sys.executable} -c '{code}' {command} {' '.join(SMALL)} -o '{name}' {closed}"
+    result = subprocess.run(
+        ["sh", "-c", line],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": PACKAGES},
+        capture_output=True,
+        check=False,
+        timeout=240,
+    )
+    assert result.returncode == 0
+    found = sorted(tmp_path.glob("a.*exr"))
+    assert len(found) == (2 if "frames" in command else 1)
+    assert {path.read_bytes() for path in found} == {expected}
+
+
+def test_with_closed_streams_a_fault_has_its_status():
+    command = f"exec {sys.executable} -c 'from skybake.cli import run; run()' presets show vulcan"
+    result = subprocess.run(
+        ["sh", "-c", f"{command} 2>&-"],
+        env=os.environ | {"PYTHONPATH": PACKAGES},
+        capture_output=True,
+        check=False,
+    )
+    assert (result.returncode, result.stdout) == (1, b"")
 
 
 def test_a_full_disk_below_standard_output_is_one_line():
@@ -187,9 +221,11 @@ def test_what_computes_nothing_needs_hardly_any_memory(arguments):
 
 
 def test_memory_that_ends_on_the_way_is_one_line(tmp_path):
-    """The pixels of this file would take 1.6 GB."""
+    """The pixels of this file take 0.8 GB, and it is not made smaller."""
     output = OpenImageIO.ImageOutput.create("exr")
-    assert output.open(str(tmp_path / "a.exr"), OpenImageIO.ImageSpec(16384, 8192, 3, "half"))
+    assert output.open(str(tmp_path / "a.exr"), OpenImageIO.ImageSpec(1024, 65536, 3, "half"))
+    for first in range(0, 65536, 4096):
+        assert output.write_scanlines(first, first + 4096, 0, np.zeros((4096, 1024, 3), np.half))
     assert output.close()
     found = run("preview", "a.exr", cwd=tmp_path, wrapper=limited(1536))
     assert found == (1, "", "skybake: memory: too little for this task (the limit is 1536 MB)\n")

@@ -121,7 +121,7 @@ def test_what_is_no_text_file_is_refused_in_one_line(tmp_path):
     latin.write_bytes(b'title = "M\xe4rz"')
     with pytest.raises(PresetError, match=r"latin\.toml: must be UTF-8 text$"):
         load_preset(latin)
-    with pytest.raises(PresetError, match=r"cannot be read: Is a directory$"):
+    with pytest.raises(PresetError, match=r"must be a regular file, got a folder$"):
         load_preset(tmp_path)
     with pytest.raises(PresetError, match="cannot be read: embedded null byte"):
         load_preset("nul\0.toml")

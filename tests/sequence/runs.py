@@ -16,7 +16,7 @@ def bake(folder, *arguments, status=0):
 
 def contents(folder):
     """Bytes of all files by name."""
-    return {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
+    return {path.name: path.read_bytes() for path in sorted(folder.iterdir()) if path.is_file()}
 
 
 def wait_for(condition, process):

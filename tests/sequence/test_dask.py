@@ -184,6 +184,9 @@ def test_a_cluster_without_workers_is_one_line(tmp_path, scheduler):
 
 
 OF_ANOTHER_VERSION = f"import skybake.version; skybake.version.__version__ = '0.0.1'; {WORKER}"
+ON_ANOTHER_PROCESSOR = (
+    "import llvmlite.binding; llvmlite.binding.get_host_cpu_name = lambda: 'i486'; " + WORKER
+)
 WITHOUT_SKYBAKE = f"import sys; sys.modules['skybake'] = None; {WORKER}"
 
 
@@ -191,6 +194,7 @@ WITHOUT_SKYBAKE = f"import sys; sys.modules['skybake'] = None; {WORKER}"
     ("code", "message"),
     [
         (OF_ANOTHER_VERSION, r"must have skybake \S+ as here, got 0\.0\.1\n"),
+        (ON_ANOTHER_PROCESSOR, r"must have processor \S+ \S+ as here, got i486 \S+\n"),
         (WITHOUT_SKYBAKE, r"must have skybake \S+, got \S.*\n"),
     ],
 )

@@ -7,7 +7,7 @@ import time
 import numpy as np
 import pytest
 
-from skybake.formats.reader import read_whole_attributes
+from skybake.formats.reader import read_image
 from tests.cli.runs import AS_A_USER, installed, listing, run, run_on_terminal, start
 from tests.sequence.runs import QUICK, bake, contents, wait_for
 
@@ -49,7 +49,7 @@ def test_a_run_that_is_killed_ten_times_bakes_each_frame_once(tmp_path, undistur
         now = frames(tmp_path)
         assert done.items() <= now.items()
         for name in now.keys() - done.keys():
-            read_whole_attributes(tmp_path / name)
+            read_image(tmp_path / name)
         done = now
     assert 10 <= len(done) < 80
     bake(tmp_path, "--frames", ALL, "--skip-existing")
@@ -100,7 +100,7 @@ def test_an_interrupt_is_answered_at_once_and_leaves_no_part(
     left = listing(tmp_path)
     assert len(left) < 20
     for name in left:
-        read_whole_attributes(tmp_path / name)
+        read_image(tmp_path / name)
 
 
 def test_two_sequences_in_one_folder_leave_whole_frames(tmp_path, undisturbed):
@@ -117,7 +117,7 @@ def test_a_full_disk_fails_the_frames_that_have_no_room_and_keeps_the_others(sma
     done = {name for name in listing(small_disk) if name.endswith(".exr")}
     assert 0 < len(done) < 20
     for name in done:
-        read_whole_attributes(small_disk / name)
+        read_image(small_disk / name)
     failed = [int(line.split()[2].rstrip(":")) for line in errors if " frame " in line]
     assert [f"a.{number:04d}.exr" for number in failed] == [
         f"a.{number:04d}.exr" for number in range(1, 21) if f"a.{number:04d}.exr" not in done

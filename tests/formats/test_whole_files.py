@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from skybake.errors import OutputError
-from skybake.formats.partial import replace_when_whole
+from skybake.formats.whole_files import replace_when_whole
 from skybake.formats.writer import open_map
 from tests.formats.maps import listing, map_spec, sky, write_map
 

@@ -1,0 +1,65 @@
+"""Presets with much text in them, whose maps other programs must be able to open."""
+
+import hashlib
+import json
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from skybake.baking.recipe import LONGEST_RECIPE
+
+from skybake.formats.reader import read_image
+from skybake.preset import load_preset
+from tests.cli.runs import invoke
+from tests.formats.maps import program
+
+QUICK = ("--size", "32x16", "--method", "hillaire", "-q")
+
+
+@pytest.fixture
+def long(folder):
+    """A preset whose ground has a spectrum of 400 numbers."""
+    nodes = [300.0 + 1.5 * i for i in range(400)]
+    values = [0.1 + 0.0001 * i for i in range(400)]
+    path = folder / "long.toml"
+    path.write_text(
+        f'extends = "earth"\n[ground]\nwavelength_nm = {nodes}\nalbedo = {values}\n', "utf-8"
+    )
+    return path
+
+
+@pytest.mark.parametrize("suffix", ["exr", "hdr"])
+def test_a_long_preset_makes_a_map_that_is_read_shown_and_found_again(long, suffix):
+    name = f"a.{suffix}"
+    assert invoke("render", *QUICK, "--preset", long, "-o", name).exit_code == 0
+    assert invoke("preview", name).exit_code == 0
+    recipe = read_image(Path(name))[1]["skybake:recipe"]
+    assert len(recipe) <= LONGEST_RECIPE
+    whole = json.dumps(load_preset(long).recipe, sort_keys=True)
+    assert json.loads(recipe)["preset"] == {"sha256": hashlib.sha256(whole.encode()).hexdigest()}
+    arguments = ("sequence", *QUICK, "--preset", long, "--frames", "1", "-o", f"b.#.{suffix}")
+    assert invoke(*arguments).exit_code == 0
+    result = invoke(*[one for one in arguments if one != "-q"], "--skip-existing")
+    assert "0 frames baked, 1 skipped" in result.stdout
+    manifest = json.loads(Path("b.sequence.json").read_text("utf-8"))
+    assert len(manifest["recipe"]["preset"]["ground"]["albedo"]) == 400
+
+
+def test_attributes_that_no_radiance_header_has_room_for_are_refused(folder):
+    from skybake.baking import MapSettings, bake
+    from skybake.errors import InputError
+
+    settings = MapSettings(width=8, method="hillaire")
+    with pytest.raises(InputError, match=r"a.hdr: attributes must fit into 90 lines"):
+        bake("earth", Path("a.hdr"), settings, attributes={"note": "x" * 8000})
+    assert list(folder.iterdir()) == []
+
+
+def test_ffmpeg_sees_the_light_of_a_map_of_a_long_preset(long):
+    assert invoke("render", *QUICK, "--preset", long, "-o", "a.exr").exit_code == 0
+    command = (program("ffmpeg"), "-v", "error", "-i", "a.exr", "-f", "rawvideo")
+    process = subprocess.run(
+        [*command, "-pix_fmt", "rgb24", "-"], capture_output=True, check=True, timeout=60
+    )
+    assert np.frombuffer(process.stdout, np.uint8).max() > 50
