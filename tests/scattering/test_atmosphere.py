@@ -166,8 +166,8 @@ DAMAGES = [
     with_its_own_digest("ground", lambda array: array[:2]),
     with_its_own_digest("sun_angle", lambda array: array[:, None]),
     with_its_own_digest("order", lambda array: array + 1),
-    with_its_own_digest("cut_peaked", lambda _: np.array([7])),
-    with_its_own_digest("lobe_weights", lambda array: array[..., :-1]),
+    with_its_own_digest("delta_m_peaked", lambda _: np.array([7])),
+    with_its_own_digest("basis_weights", lambda array: array[..., :-1]),
     with_its_own_digest("shells", lambda array: array[:1]),
 ]
 
