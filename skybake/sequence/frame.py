@@ -20,7 +20,7 @@ from skybake.baking.write import bake_scene
 from skybake.colour.exposure import ev_from_luminance
 from skybake.errors import InputError
 from skybake.formats.reader import read_attributes
-from skybake.formats.whole_files import remove_leftovers
+from skybake.formats.whole_files import WholeFiles, remove_leftovers
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.preset import Planet
 from skybake.sequence.digests import claim_of, file_sha256, verified_digests, write_digests
@@ -108,18 +108,20 @@ def finish_frame(frame: Frame, planet: Planet, look: Look, workers: Workers = AL
     workers.check()
     files = map_paths(frame.output, frame.settings)
     if found is None:
-        baked = bake_scene(
-            work.scene,
-            frame.output,
-            preview=frame.preview,
-            preview_ev=None if frame.preview is None else work.ev,
-            preview_view=look.view,
-            attributes=frame.attributes,
-        )
+        with WholeFiles() as whole:
+            baked = bake_scene(
+                work.scene,
+                frame.output,
+                preview=frame.preview,
+                preview_ev=None if frame.preview is None else work.ev,
+                preview_view=look.view,
+                attributes=frame.attributes,
+                files=whole,
+            )
+            digests = {path: file_sha256(whole.written(path)) for path in frame.files()}
+            write_digests(whole, frame.output, work.claim, digests)
         # As it will be when its files are found instead.
         light = light_from_attributes(attributes_from_light(baked))
-        digests = {path: file_sha256(path) for path in frame.files()}
-        write_digests(frame.output, work.claim, digests)
     else:
         light, digests = found
         for path in frame.files():
