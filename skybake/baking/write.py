@@ -156,8 +156,12 @@ def bake_scene(
     preview_view: str = "aces2",
     attributes: Mapping[str, Attribute] | None = None,
     progress: Progress | None = None,
+    files: WholeFiles | None = None,
 ) -> Baked:
-    """Bake the map of a scene; parameters and errors are those of `bake`."""
+    """Bake the map of a scene.
+
+    Parameters and errors are those of `bake`, with what else the files shall appear with.
+    """
     planet, settings = scene.planet, scene.settings
     paths = map_paths(output, settings)
     light = light_of_scene(scene)
@@ -184,7 +188,8 @@ def bake_scene(
         for path, raster in rasters.items()
     }
     with ExitStack() as stack:
-        files = stack.enter_context(WholeFiles())
+        if files is None:
+            files = stack.enter_context(WholeFiles())
         draw = None
         if preview is not None:
             preview_ev = scene_ev(scene) if preview_ev is None else preview_ev

@@ -69,7 +69,8 @@ def rename_all(renames: Sequence[Rename]) -> None:
         _keep_before(rename)
     _write_journal(renames)
     try:
-        for rename in renames:
+        # What was added last tells of what was added before, and is there first.
+        for rename in reversed(renames):
             rename.new.replace(rename.target)
         (renames[0].folder / JOURNAL).unlink()
     except BaseException:
@@ -137,7 +138,7 @@ def _write(path: Path, text: str) -> None:
 def _undo(first: Path) -> None:
     """Take back the renames of a journal, as often as it takes."""
     journal = first / JOURNAL
-    for entry in reversed(json.loads(journal.read_text("utf-8", "surrogateescape"))):
+    for entry in json.loads(journal.read_text("utf-8", "surrogateescape")):
         rename = _rename_of(entry, first.parent)
         # A file of another process under the name stays.
         if is_ours(rename.folder) and _inode(rename.target) == entry["inode"]:

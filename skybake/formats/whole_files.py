@@ -70,6 +70,10 @@ class WholeFiles:
             self._locks.append(lock)
         return rename.new
 
+    def written(self, path: Path) -> Path:
+        """Return the file that `add` returned for a target."""
+        return self._renames[self._paths.index(path)].new
+
     def __exit__(
         self,
         kind: type[BaseException] | None,

@@ -10,12 +10,12 @@ import hashlib
 import json
 import os
 from collections.abc import Iterable, Mapping
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from skybake.errors import InputError, OutputError
-from skybake.formats.whole_files import replace_when_whole
+from skybake.errors import InputError
+from skybake.formats.targets import faults_of
+from skybake.formats.whole_files import WholeFiles
 from skybake.input_files import read_text
 
 FOLDER = ".skybake-digests"
@@ -46,28 +46,31 @@ def file_sha256(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def write_digests(output: Path, claim: str, digests: Mapping[Path, str]) -> None:
-    """Write what is known of a frame's files.
-
-    Where that cannot be, nothing is known, and the frame is baked again when it is
-    looked for.
+def write_digests(files: WholeFiles, output: Path, claim: str, digests: Mapping[Path, str]) -> None:
+    """Write what is known of a frame's files, to appear together with them.
 
     Parameters
     ----------
+    files : WholeFiles
+        Those of the frame.
     output : Path
         The frame's, as `skybake.baking.bake` takes it.
     claim : str
         As of `claim_of`.
     digests : mapping of Path to str
         SHA-256 of each file.
+
+    Raises
+    ------
+    OutputError
+        If it cannot be written.
     """
     path = _path(output)
     lines = [f"{_CLAIM}{claim}"]
     lines += [f"{sha256}  {_name(path, file)}" for file, sha256 in digests.items()]
-    with suppress(OutputError, OSError):
+    with faults_of(path):
         path.parent.mkdir(exist_ok=True)
-        with replace_when_whole(path) as temporary:
-            temporary.write_text("\n".join(lines) + "\n", "utf-8", "surrogateescape")
+        files.add(path).write_text("\n".join(lines) + "\n", "utf-8", "surrogateescape")
 
 
 def verified_digests(output: Path, claim: str, files: Iterable[Path]) -> dict[Path, str] | None:

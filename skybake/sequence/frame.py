@@ -16,7 +16,7 @@ from skybake.baking.write import bake_scene
 from skybake.colour.exposure import ev_from_luminance
 from skybake.errors import InputError
 from skybake.formats.reader import read_attributes
-from skybake.formats.whole_files import remove_leftovers
+from skybake.formats.whole_files import WholeFiles, remove_leftovers
 from skybake.image.light import Light, attributes_from_light, light_from_attributes
 from skybake.image.picture import scene_ev, thumbnail
 from skybake.image.recipe import preview_texts, recipe_hash
@@ -114,18 +114,20 @@ def finish_frame(
     pipeline.workers.check()
     files = map_paths(frame.output, frame.settings)
     if found is None:
-        baked = bake_scene(
-            work.scene,
-            frame.output,
-            preview=frame.preview,
-            preview_ev=None if frame.preview is None else work.ev,
-            preview_view=previews.view,
-            attributes=frame.attributes,
-        )
+        with WholeFiles() as whole:
+            baked = bake_scene(
+                work.scene,
+                frame.output,
+                preview=frame.preview,
+                preview_ev=None if frame.preview is None else work.ev,
+                preview_view=previews.view,
+                attributes=frame.attributes,
+                files=whole,
+            )
+            digests = {path: file_sha256(whole.written(path)) for path in frame.files()}
+            write_digests(whole, frame.output, work.claim, digests)
         # As it will be when its files are found instead.
         light = light_from_attributes(attributes_from_light(baked))
-        digests = {path: file_sha256(path) for path in frame.files()}
-        write_digests(frame.output, work.claim, digests)
     else:
         light, digests = found
         for path in frame.files():

@@ -188,7 +188,7 @@ def note(self, *arguments):
     compiled.append(self.py_func)
     return link(self, *arguments)
 link, kernel.Kernel._link = kernel.Kernel._link, note
-skybake.bake(skybake.load_preset("earth"), Path(sys.argv[1]), skybake.MapSettings(width=16))
+skybake.bake(skybake.load_preset("earth"), Path(sys.argv[1]), skybake.map_settings(size=16))
 functions, known = set(compiled), set()
 while functions:
     function = functions.pop()

@@ -18,7 +18,7 @@ import skybake
 warnings.filterwarnings("ignore", category=DeprecationWarning)
 
 def bake(name):
-    skybake.bake(skybake.load_preset("earth"), Path(name), skybake.MapSettings(width=64))
+    skybake.bake(skybake.load_preset("earth"), Path(name), skybake.map_settings(size=64))
 
 bake("parent.exr")
 children = multiprocessing.get_context("fork").Pool(2)
@@ -87,7 +87,7 @@ thread.start()
 begun.wait()
 context = multiprocessing.get_context("fork")
 results = context.Queue()
-with atmosphere._lock:
+with atmosphere._recent._lock:
     child = context.Process(target=load, args=(results,))
     child.start()
 print(results.get(timeout=60) > 1)
