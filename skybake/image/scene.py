@@ -124,7 +124,9 @@ class Scene:
         # A sun in the zenith touches every column, and its spectra would fill the memory.
         for first in range(0, len(flux), CELLS_AT_ONCE):
             part = slice(first, first + CELLS_AT_ONCE)
-            light = self.sun.radiance_per_irradiance(cells.zenith[part], cells.distance[part])
+            light = self.sun.radiance_per_irradiance(
+                cells.zenith[part], cells.distance[part], cells.azimuth[part]
+            )
             flux[part] = (light @ self.rgb_weights) * cells.solid_angle[part, None]
         return flux
 

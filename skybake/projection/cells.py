@@ -19,9 +19,10 @@ class Cells(NamedTuple):
 
     Attributes
     ----------
-    zenith, distance, solid_angle : ndarray of float64, shape (cell,)
-        Zenith angles, angles from the disc's centre [rad], and sizes [sr] of what
-        the disc covers of them.
+    zenith, azimuth : ndarray of float64, shape (cell,)
+        Where they lie. [rad]
+    distance, solid_angle : ndarray of float64, shape (cell,)
+        Angles from the disc's centre [rad], and sizes [sr] of what the disc covers of them.
     texel : ndarray of int, shape (cell, 4)
         Rows of `weight` in a flat image that each cell adds to.
     weight : ndarray of float64, shape (cell, 4)
@@ -29,6 +30,7 @@ class Cells(NamedTuple):
     """
 
     zenith: Array
+    azimuth: Array
     distance: Array
     solid_angle: Array
     texel: npt.NDArray[np.int64]

@@ -112,6 +112,7 @@ class EquirectChart(Chart):
         texel, weight = _bilinear(width, height, row, column)
         return Cells(
             zenith=theta[inside],
+            azimuth=phi[inside] + bearing,
             distance=distance[inside],
             solid_angle=covered[inside],
             texel=texel,

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from skybake.baking.recipe import LONGEST_RECIPE
 
 from skybake.formats.reader import read_image
+from skybake.image.recipe import LONGEST_RECIPE
 from skybake.preset import load_preset
 from tests.cli.runs import invoke
 from tests.formats.maps import program
@@ -47,10 +47,10 @@ def test_a_long_preset_makes_a_map_that_is_read_shown_and_found_again(long, suff
 
 
 def test_attributes_that_no_radiance_header_has_room_for_are_refused(folder):
-    from skybake.baking import MapSettings, bake
+    from skybake.baking import bake, map_settings
     from skybake.errors import InputError
 
-    settings = MapSettings(width=8, method="hillaire")
+    settings = map_settings(size=8, method="hillaire")
     with pytest.raises(InputError, match=r"a.hdr: attributes must fit into 90 lines"):
         bake("earth", Path("a.hdr"), settings, attributes={"note": "x" * 8000})
     assert list(folder.iterdir()) == []

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from skybake.baking.light import Light
 
 from skybake.errors import OutputError
-from skybake.sequence.frame import Outcome
+from skybake.image.light import Light
+from skybake.sequence.frame import FrameOutcome
 from skybake.sequence.thumbnails import Thumbnails
 from tests.formats.maps import listing
 from tests.sequence.pictures import dusk
@@ -27,7 +27,7 @@ def outcome(number, **thumbnails):
         sky_illuminance=1.0,
     )
     pictures = {int(width.lstrip("w")): picture for width, picture in thumbnails.items()}
-    return Outcome(number, True, light, (), (), None, pictures)
+    return FrameOutcome(number, True, light, (), (), None, pictures)
 
 
 def test_pictures_come_back_by_number_and_width_whatever_the_order(tmp_path):

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from skybake.angles import angles_from_direction, direction_from_angles
+from skybake.angles import direction_from_angles, zenith_azimuth
 from skybake.errors import InputError
 from skybake.sky import spectral_table
 from skybake.sky.disc import Disc
@@ -136,5 +136,5 @@ def test_angles_of_a_direction_are_those_that_it_is_made_of():
     direction = direction_from_angles(azimuth, elevation)
     np.testing.assert_allclose(np.linalg.norm(direction, axis=1), 1.0, rtol=1e-14)
     np.testing.assert_allclose(
-        angles_from_direction(7.0 * direction), (azimuth, elevation), atol=1e-12
+        zenith_azimuth(7.0 * direction), (math.pi / 2.0 - elevation, azimuth), atol=1e-12
     )
