@@ -104,10 +104,10 @@ class FisheyeChart(Chart):
         texel[:, 0] = (texel_row * edge + texel_column)[inside]
         weight = np.zeros(texel.shape)
         weight[:, 0] = 1.0 / self._size(off_axis_texel[inside])
-        zenith, azimuth = zenith_azimuth(vectors[inside])
+        zeniths, azimuths = zenith_azimuth(vectors[inside])
         return Cells(
-            zenith=zenith,
-            azimuth=azimuth,
+            zenith=zeniths,
+            azimuth=azimuths,
             distance=distance[inside],
             solid_angle=covered[inside],
             texel=texel,

@@ -88,10 +88,10 @@ class GnomonicChart(Chart):
         texel[:, 0] = row[inside].astype(np.int64) * width + column[inside].astype(np.int64)
         weight = np.zeros(texel.shape)
         weight[:, 0] = 1.0 / self._solid_angles(*np.divmod(texel[:, 0], width))
-        zenith, azimuth = zenith_azimuth(vectors[inside])
+        zeniths, azimuths = zenith_azimuth(vectors[inside])
         return Cells(
-            zenith=zenith,
-            azimuth=azimuth,
+            zenith=zeniths,
+            azimuth=azimuths,
             distance=distance[inside],
             solid_angle=covered[inside],
             texel=texel,

@@ -47,7 +47,7 @@ def test_a_long_preset_makes_a_map_that_is_read_shown_and_found_again(long, suff
 
 
 def test_attributes_that_no_radiance_header_has_room_for_are_refused(folder):
-    from skybake.baking import bake, map_settings
+    from skybake import bake, map_settings
     from skybake.errors import InputError
 
     settings = map_settings(size=8, method="hillaire")
