@@ -8,6 +8,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from skybake.angles import zenith_azimuth
+
 Array = npt.NDArray[np.float64]
 
 CELLS_PER_RADIUS = 48
@@ -35,6 +37,40 @@ class Cells(NamedTuple):
     solid_angle: Array
     texel: npt.NDArray[np.int64]
     weight: Array
+
+
+def cells_of_one_texel(
+    vectors: Array,
+    centre: Array,
+    radius: float,
+    solid_angle: Array,
+    texel: npt.NDArray[np.int64],
+    texel_solid_angle: Array,
+) -> Cells:
+    """Cells of a disc, each of which adds to the one texel that it lies in.
+
+    Parameters
+    ----------
+    vectors : ndarray of float64, shape (cell, 3)
+        Unit vectors of the cells' centres.
+    centre, radius : ndarray of float64, shape (3,), float
+        Unit vector of the disc's centre, and its angular radius. [rad]
+    solid_angle : ndarray of float64, shape (cell,)
+        Of the cells, which are nearly square. [sr]
+    texel : ndarray of int64, shape (cell,)
+        Indices in a flat image.
+    texel_solid_angle : ndarray of float64, shape (cell,)
+        Of these texels; cells in those of 0 are left out. [sr]
+    """
+    distance = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(vectors - centre, axis=-1), 1.0))
+    distance, covered = cover(distance, radius, np.sqrt(solid_angle), solid_angle)
+    inside = (covered > 0.0) & (texel_solid_angle > 0.0)
+    zenith, azimuth = zenith_azimuth(vectors[inside])
+    texels = np.zeros((np.count_nonzero(inside), 4), np.int64)
+    texels[:, 0] = texel[inside]
+    weight = np.zeros(texels.shape)
+    weight[:, 0] = 1.0 / texel_solid_angle[inside]
+    return Cells(zenith, azimuth, distance[inside], covered[inside], texels, weight)
 
 
 def cover(distance: Array, radius: float, extent: Array, solid_angle: Array) -> tuple[Array, Array]:

@@ -131,6 +131,7 @@ class Equirect(Projection):
     """
 
     name: ClassVar[str] = "equirect"
+    lights_a_dome: ClassVar[bool] = True
     width: int = 2048
 
     def __post_init__(self) -> None:

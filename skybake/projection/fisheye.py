@@ -16,7 +16,13 @@ import numpy.typing as npt
 
 from skybake.angles import direction_from_angles, zenith_azimuth
 from skybake.errors import InputError
-from skybake.projection.cells import CELLS_PER_RADIUS, Array, Cells, cover, subdivide
+from skybake.projection.cells import (
+    CELLS_PER_RADIUS,
+    Array,
+    Cells,
+    cells_of_one_texel,
+    subdivide,
+)
 from skybake.projection.chart import Canvas, Chart, Projection, check_edge, size_text, whole
 from skybake.projection.frame import (
     Frame,
@@ -92,27 +98,12 @@ class FisheyeChart(Chart):
         column, row = (grid.ravel() for grid in np.meshgrid(columns, rows))
         x_cell, y_cell = column * step - half, row * step - half
         vectors = self._vectors(x_cell, y_cell)
-        distance = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(vectors - centre, axis=-1), 1.0))
-        size = width * height * np.sinc(np.hypot(x_cell, y_cell) / math.pi)
-        distance, covered = cover(distance, radius, np.sqrt(np.maximum(size, 0.0)), size)
+        size = width * height * np.maximum(np.sinc(np.hypot(x_cell, y_cell) / math.pi), 0.0)
         texel_row, texel_column = row.astype(np.int64), column.astype(np.int64)
-        off_axis_texel = np.hypot(
-            (texel_column + 0.5) * step - half, (texel_row + 0.5) * step - half
-        )
-        inside = (covered > 0.0) & (off_axis_texel <= half)
-        texel = np.zeros((np.count_nonzero(inside), 4), np.int64)
-        texel[:, 0] = (texel_row * edge + texel_column)[inside]
-        weight = np.zeros(texel.shape)
-        weight[:, 0] = 1.0 / self._size(off_axis_texel[inside])
-        zeniths, azimuths = zenith_azimuth(vectors[inside])
-        return Cells(
-            zenith=zeniths,
-            azimuth=azimuths,
-            distance=distance[inside],
-            solid_angle=covered[inside],
-            texel=texel,
-            weight=weight,
-        )
+        off_axis = np.hypot((texel_column + 0.5) * step - half, (texel_row + 0.5) * step - half)
+        texel_size = np.where(off_axis <= half, self._size(off_axis), 0.0)
+        texel = texel_row * edge + texel_column
+        return cells_of_one_texel(vectors, centre, radius, size, texel, texel_size)
 
     def _plane(self, first: int, last: int) -> tuple[Array, Array]:
         """Angles from the middle, to the right and down, of the pixels in rows first..last."""

@@ -9,7 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.angles import direction_from_angles, zenith_azimuth
-from skybake.projection.cells import CELLS_PER_RADIUS, Array, Cells, cover, subdivide
+from skybake.projection.cells import (
+    CELLS_PER_RADIUS,
+    Array,
+    Cells,
+    cells_of_one_texel,
+    subdivide,
+)
 from skybake.projection.chart import Chart
 from skybake.projection.frame import Frame, zenith_extent
 
@@ -80,23 +86,11 @@ class GnomonicChart(Chart):
         column, row = (grid.ravel() for grid in np.meshgrid(columns, rows))
         u, v = self._plane(column, row)
         vectors = self._vectors(u, v)
-        distance = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(vectors - centre, axis=-1), 1.0))
         size = cell_width * cell_height / (1.0 + u * u + v * v) ** 1.5
-        distance, covered = cover(distance, radius, np.sqrt(size), size)
-        inside = covered > 0.0
-        texel = np.zeros((np.count_nonzero(inside), 4), np.int64)
-        texel[:, 0] = row[inside].astype(np.int64) * width + column[inside].astype(np.int64)
-        weight = np.zeros(texel.shape)
-        weight[:, 0] = 1.0 / self._solid_angles(*np.divmod(texel[:, 0], width))
-        zeniths, azimuths = zenith_azimuth(vectors[inside])
-        return Cells(
-            zenith=zeniths,
-            azimuth=azimuths,
-            distance=distance[inside],
-            solid_angle=covered[inside],
-            texel=texel,
-            weight=weight,
-        )
+        texel_row, texel_column = row.astype(np.int64), column.astype(np.int64)
+        texel_size = self._solid_angles(texel_row, texel_column)
+        texel = texel_row * width + texel_column
+        return cells_of_one_texel(vectors, centre, radius, size, texel, texel_size)
 
     def _plane(self, column: npt.NDArray[Any], row: npt.NDArray[Any]) -> tuple[Array, Array]:
         """Places on the plane, right and down of its middle, given in pixels."""

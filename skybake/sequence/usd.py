@@ -16,6 +16,7 @@ from skybake.colour.space import find_colour_space
 from skybake.errors import InputError
 from skybake.formats.targets import check_target
 from skybake.formats.whole_files import replace_when_whole
+from skybake.projection import PROJECTIONS
 from skybake.sequence.manifest import FrameRecord, SequenceHeader, ascending
 from skybake.sequence.text import is_plain_line
 
@@ -32,8 +33,8 @@ def check_usd(path: Path, projection: str, files: Iterable[str] = ()) -> None:
     ----------
     path : Path
         ``.usda``.
-    projection : {"equirect", "cubemap"}
-        Of the maps.
+    projection : str
+        Of the maps, a key of `skybake.projection.PROJECTIONS`.
     files : iterable of str, optional
         The maps, as seen from the USD file's folder.
 
@@ -48,7 +49,7 @@ def check_usd(path: Path, projection: str, files: Iterable[str] = ()) -> None:
     """
     if path.suffix.lower() != ".usda":
         raise InputError(f"{path}: suffix of a USD file must be .usda, got {path.suffix!r}")
-    if projection != "equirect":
+    if not PROJECTIONS[projection].lights_a_dome:
         raise InputError(
             f"{path}: a dome light of USD needs maps of the projection equirect, got {projection}"
         )

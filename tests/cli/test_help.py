@@ -85,6 +85,10 @@ def test_a_command_loads_no_other(tmp_path):
 
 def test_choices_are_those_of_the_engine():
     assert tuple(PROJECTIONS) == values.PROJECTIONS
+    fields = {"cube_layout": "layout", "fov": "fov", "look": "azimuth"}
+    for option, having in values.PROJECTIONS_WITH.items():
+        names = (kind.name for kind in PROJECTIONS.values() if hasattr(kind, fields[option]))
+        assert tuple(names) == having
     assert values.CUBE_LAYOUTS == LAYOUTS
     assert tuple(COLOUR_SPACES) == values.COLOUR_SPACES
     assert values.UNITS == UNITS

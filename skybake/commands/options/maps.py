@@ -117,14 +117,10 @@ def map_needs(options: Mapping[str, Any]) -> Needs:
     if is_radiance and options["cube_layout"] == "exr":
         raise click.UsageError("--cube-layout exr: needs an .exr output")
     return {
-        "cube_layout": (options["projection"] == "cubemap", "needs --projection cubemap"),
-        **dict.fromkeys(
-            ("fov", "look"),
-            (
-                options["projection"] in {"fisheye", "perspective"},
-                "needs --projection perspective or fisheye",
-            ),
-        ),
+        **{
+            name: (options["projection"] in having, f"needs --projection {' or '.join(having)}")
+            for name, having in values.PROJECTIONS_WITH.items()
+        },
         "pixel": (not is_radiance, "needs an .exr output"),
         "compression": (not is_radiance, "needs an .exr output"),
         "units": (options["ev"] is None, "cannot be combined with --ev"),

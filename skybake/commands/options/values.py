@@ -22,6 +22,11 @@ from skybake.sequence.ramp import Ramp
 from skybake.units import parse_angle, parse_duration, parse_length
 
 PROJECTIONS = ("equirect", "cubemap", "fisheye", "perspective")
+PROJECTIONS_WITH = {
+    "cube_layout": ("cubemap",),
+    "fov": ("fisheye", "perspective"),
+    "look": ("fisheye", "perspective"),
+}
 CUBE_LAYOUTS = ("faces", "cross", "exr")
 COLOUR_SPACES = ("lin_rec709", "acescg", "lin_rec2020", "lin_p3d65", "aces2065-1", "xyz")
 UNITS = ("ev15", "nits")
