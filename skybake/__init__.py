@@ -25,10 +25,13 @@ if TYPE_CHECKING:
         PresetWarning,
         SkybakeError,
     )
+    from skybake.image.image import Image
     from skybake.image.light import Light
+    from skybake.image.scene import Scene
     from skybake.image.settings import Encoding, Lighting, MapSettings, View, map_settings
     from skybake.jit.workers import Workers
     from skybake.optics.changes import PresetChanges
+    from skybake.pipeline import Pipeline, Sky
     from skybake.preset import (
         Absorber,
         Aerosol,
@@ -62,7 +65,6 @@ if TYPE_CHECKING:
     from skybake.sequence.products import Products, default_manifest
     from skybake.sequence.ramp import Ramp
     from skybake.sequence.run import FrameEvent, SequenceResult
-    from skybake.sky.sky import Sky
 
 __all__ = [
     "SITES",
@@ -88,6 +90,7 @@ __all__ = [
     "Gas",
     "Ground",
     "HenyeyGreensteinPhase",
+    "Image",
     "InputError",
     "Light",
     "Lighting",
@@ -97,6 +100,7 @@ __all__ = [
     "Override",
     "Perspective",
     "Phase",
+    "Pipeline",
     "Place",
     "Plan",
     "Planet",
@@ -108,6 +112,7 @@ __all__ = [
     "Projection",
     "Ramp",
     "RayleighPhase",
+    "Scene",
     "SequenceResult",
     "Sky",
     "SkybakeError",
@@ -154,6 +159,7 @@ _HOMES = {
     "Gas": "skybake.preset",
     "Ground": "skybake.preset",
     "HenyeyGreensteinPhase": "skybake.preset",
+    "Image": "skybake.image.image",
     "InputError": "skybake.errors",
     "Light": "skybake.image.light",
     "Lighting": "skybake.image.settings",
@@ -163,6 +169,7 @@ _HOMES = {
     "Override": "skybake.preset",
     "Perspective": "skybake.projection",
     "Phase": "skybake.preset",
+    "Pipeline": "skybake.pipeline",
     "Place": "skybake.ephemeris.place",
     "Plan": "skybake.sequence.plan",
     "Planet": "skybake.preset",
@@ -174,9 +181,10 @@ _HOMES = {
     "Projection": "skybake.projection",
     "Ramp": "skybake.sequence.ramp",
     "RayleighPhase": "skybake.preset",
+    "Scene": "skybake.image.scene",
     "SITES": "skybake.ephemeris.place",
     "SequenceResult": "skybake.sequence.run",
-    "Sky": "skybake.sky.sky",
+    "Sky": "skybake.pipeline",
     "SkybakeError": "skybake.errors",
     "Spectrum": "skybake.preset",
     "Star": "skybake.preset",
