@@ -1,4 +1,4 @@
-"""The command line: commands, and faults as one line with an exit status."""
+"""The command line: commands, and errors as one line with an exit status."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasat
 
 _COMMANDS = ("cache", "presets", "preview", "probe", "render", "sequence")
 
-# What Python says, as a RuntimeError, where a thread gets no stack or may not be.
+# Message of the RuntimeError where a thread gets no stack or is not allowed.
 _NO_THREAD = "can't start new thread"
 
 
@@ -41,7 +41,7 @@ class _EndedError(BaseException):
 
 
 class _CommandLine(click.Group):
-    """A group whose faults are one line on stderr and an exit status.
+    """A group whose errors are one line on stderr and an exit status.
 
     A command's module, of the same name, is imported when the command is called.
     """
@@ -63,7 +63,7 @@ class _CommandLine(click.Group):
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
         kwargs["standalone_mode"] = False
         kwargs["prog_name"] = "skybake"
-        told_to_end = False
+        ends_by_signal = False
         with warnings.catch_warnings(), _signals_raised():
             warnings.showwarning = _show_warning
             try:
@@ -76,13 +76,13 @@ class _CommandLine(click.Group):
             except SkybakeError as error:
                 status = _fail(advised(error), FAILED)
             except BrokenPipeError:
-                # Whoever read our output has closed it; nor can Python flush it at exit.
+                # The reader of our output has closed it; Python cannot flush it at exit either.
                 os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
                 status = FAILED
             except click.Abort:
-                status, told_to_end = _fail("interrupted", INTERRUPTED), True
+                status, ends_by_signal = _fail("interrupted", INTERRUPTED), True
             except _EndedError as error:
-                status, told_to_end = _fail("terminated", ENDED_BY_SIGNAL + error.args[0]), True
+                status, ends_by_signal = _fail("terminated", ENDED_BY_SIGNAL + error.args[0]), True
             except MemoryError:
                 status = _fail(f"memory: too little for this task ({memory_text()})", FAILED)
             except RuntimeError as error:
@@ -91,9 +91,9 @@ class _CommandLine(click.Group):
                 limits = "too little memory, or too few processes allowed"
                 status = _fail(f"threads: none can be started ({limits})", FAILED)
             except OSError as error:
-                # What knows a file names it; this is a full disk below standard output.
+                # Code that knows the file names it; this is a full disk below standard output.
                 status = _fail(f"output: cannot be written ({error.strerror or error})", FAILED)
-        if told_to_end:
+        if ends_by_signal:
             # Only now is the exception gone, and with it what it kept from its clean-up.
             _exit_now(status)
         sys.exit(status or 0)

@@ -10,16 +10,16 @@ from collections.abc import Mapping
 
 
 class SkybakeError(Exception):
-    """A fault in what the user gave or in where the result should go."""
+    """An error in the user's input or in the target of the result."""
 
 
 class PresetError(SkybakeError, ValueError):
-    """A preset cannot be found, read, or breaks a rule of physics or grammar.
+    """A preset cannot be found or read, or breaks a rule of physics or syntax.
 
     Parameters
     ----------
     *faults : str
-        All that is wrong, a line each; the error's own message is the first of them.
+        All errors, one line each; the message of the exception is the first of them.
 
     Attributes
     ----------
@@ -35,19 +35,19 @@ class PresetError(SkybakeError, ValueError):
 
 
 class PresetWarning(UserWarning):
-    """A preset is usable, but not quite as it was written."""
+    """A preset is usable, but not exactly as it was written."""
 
 
 class OutputError(SkybakeError, OSError):
-    """A file cannot be written whole; nothing is left under its name."""
+    """A file cannot be written completely; nothing is left under its name."""
 
 
 class CancelledError(Exception):
-    """Work was given up because somebody asked for that; no fault."""
+    """Work was stopped on request; not an error."""
 
 
 class InputError(SkybakeError, ValueError):
-    """A value or an input file lies outside what skybake can work with."""
+    """A value or an input file is outside what skybake can work with."""
 
 
 class TooThickError(InputError):
@@ -55,7 +55,7 @@ class TooThickError(InputError):
 
 
 class ArgumentError(InputError):
-    """Arguments of a function cannot be used, alone or beside each other.
+    """Arguments of a function cannot be used, alone or together.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ class ArgumentError(InputError):
         The message, with names of arguments in braces, as
         ``{latitude}: needs {longitude} as well``.
     **values : object
-        What else stands in braces.
+        Values of the other names in braces.
     """
 
     def __init__(self, problem: str, /, **values: object) -> None:
@@ -71,7 +71,7 @@ class ArgumentError(InputError):
         super().__init__(self.text({}))
 
     def text(self, names: Mapping[str, str]) -> str:
-        """Return the message with other names for the arguments, as those of options."""
+        """Return the message with other names for the arguments, such as those of options."""
         return self._problem.format_map(_Names({**names, **self._values}))
 
 

@@ -18,7 +18,7 @@ LARGEST_TABLE = 4 << 20
 LARGEST_DIRECTIONS = 64 << 20
 """Size of a list of directions in CSV, some four million of them. [byte]"""
 
-# A pipe that nobody writes to would otherwise keep the opening process for ever.
+# Opening a pipe that has no writer would otherwise block for ever.
 _FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
 
 
@@ -87,7 +87,7 @@ def _read_regular(descriptor: int, where: str, largest: int) -> bytes:
         raise InputError(f"{where}: must be a regular file, got {_kind(status.st_mode)}")
     if status.st_size > largest:
         raise _too_large(where, largest, f"{status.st_size} bytes")
-    # Files of /proc tell no size, and others grow.
+    # Files of /proc report no size, and others grow.
     with os.fdopen(descriptor, "rb", closefd=False) as file:
         content = file.read(largest + 1)
     if len(content) > largest:

@@ -1,4 +1,4 @@
-"""Quantities as people type them, with or without a unit: "5deg", "2km", "30000ft", "1h30min"."""
+"""Quantities as users type them, with or without a unit: "5deg", "2km", "30000ft", "1h30min"."""
 
 from __future__ import annotations
 

@@ -8,8 +8,9 @@ import pytest
 
 import skybake
 
-ENGINE = (skybake.Projection, skybake.Scene)
 PUBLIC = {name: getattr(skybake, name) for name in skybake.__all__}
+HANDED_ON = (skybake.Projection, skybake.Scene)
+"""What users pass on and the engine alone calls."""
 
 
 def hints(thing):
@@ -22,10 +23,9 @@ def hints(thing):
             # Of the class, since fields of its bases are annotated in their modules.
             found[name] = typing.get_type_hints(thing)
         elif inspect.isroutine(member) and is_ours(member) and not name.startswith("_"):
-            # What the engine asks of a projection or a scene is no call of users.
-            if not issubclass(thing, ENGINE):
+            if not issubclass(thing, HANDED_ON):
                 found[name] = typing.get_type_hints(member)
-        elif name == "__init__" and is_ours(member) and not issubclass(thing, ENGINE):
+        elif name == "__init__" and is_ours(member) and not issubclass(thing, HANDED_ON):
             found[name] = typing.get_type_hints(member)
         elif isinstance(member, property):
             found[name] = typing.get_type_hints(member.fget)

@@ -1,4 +1,4 @@
-"""Compiles half of a render's kernels when it is run, beside the process that renders.
+"""Compiles half of a render's kernels, in a process beside the one that renders.
 
 Compiling keeps one CPU busy, and a first render spends most of its time on it. The
 kernels here are those that a render needs last. Arguments only have to be of the

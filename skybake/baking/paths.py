@@ -17,7 +17,7 @@ PLAIN_LIGHTING, PLAIN_ENCODING = Lighting(), Encoding()
 
 LONGEST_VALUE = 12
 LONGEST_CHANGES = 40
-"""Longest value, and longest of all changes together, that stands in a name. [character]"""
+"""Longest value, and longest of all changes together, that is part of a name. [character]"""
 
 _SAFE = re.compile(r"[A-Za-z0-9_.+-]+")
 _DISCS = {"include": "", "exclude": "nodisc", "only": "disc"}
@@ -26,10 +26,10 @@ _DISCS = {"include": "", "exclude": "nodisc", "only": "disc"}
 def default_path(planet: Planet, settings: MapSettings) -> Path:
     """Name that says what a map is, as ``mars_sun+05.00deg_equirect.exr``.
 
-    What was changed of the preset stands behind its name, as
-    ``mars_dust.optical_depth=2_sun+05.00deg_equirect.exr``, or if that were long six
+    What was changed of the preset follows its name, as
+    ``mars_dust.optical_depth=2_sun+05.00deg_equirect.exr``, or, if that is long, six
     digits of its digest; settings other than the default ones follow the sun, such that
-    maps of other light have other names. Size, pixel type and compression do not show.
+    maps of different light have different names. Size, pixel type and compression do not show.
     """
     view, lighting, encoding = settings.view, settings.lighting, settings.encoding
     parts = (

@@ -32,7 +32,7 @@ def compile_all() -> None:
         for number, settings in enumerate(_kinds()):
             bake(planet, Path(folder) / f"{number}.exr", settings)
     medium = build_medium(planet, WAVELENGTHS)
-    # Tables that lie on disk already have left their kernels out.
+    # Tables that are already stored needed no kernels.
     for method in ("full", "hillaire"):
         build_atmosphere(medium, method)
     here = np.zeros(1)

@@ -37,7 +37,7 @@ Progress = Callable[[float], None]
 
 @dataclass(frozen=True, kw_only=True)
 class Baked(Light):
-    """What was baked, beside its `Light`.
+    """What was baked, besides its `Light`.
 
     Attributes
     ----------
@@ -93,12 +93,12 @@ def bake(
     preview_view : {"aces2", "aces1"}, optional
         Its rendering.
     attributes : mapping of str to Attribute, optional
-        What the files shall say beside their light and their recipe, such as
+        What the files shall state besides their light and their recipe, such as
         ``{"skybake:time": "2026-06-21T04:00:00Z"}``.
     progress : callable, optional
         Called with the share that is done, from 0 to 1.
     notice : callable, optional
-        Called with a line for people where something takes long that later runs save.
+        Called with a human-readable line when something takes long that later runs need not repeat.
 
     Returns
     -------

@@ -24,7 +24,7 @@ def luminance_from_ev(ev: float) -> float:
     Raises
     ------
     InputError
-        If it lies outside.
+        If it is outside.
 
     Notes
     -----
@@ -83,7 +83,7 @@ def auto_ev(
     solid_angle : array_like of float, optional
         What each value counts, in any unit; broadcast to `luminance`.
     above : array_like of bool, optional
-        Which values lie above the horizontal; broadcast to `luminance`. If none does, all count.
+        Which values are above the horizontal; broadcast to `luminance`. If none is, all count.
 
     Returns
     -------
@@ -100,7 +100,7 @@ def auto_ev(
 
     Highlights are the 99th percentile of the hemisphere above, which the sun's disc does
     not reach but its aureole does, or the 95th of the whole map, which the ground
-    reaches that is seen from high up. The mean goes over the hemisphere above too, unless
+    reaches that is seen from high up. The mean is taken over the upper hemisphere too, unless
     that is black beside the rest as it is in space, and over what is brighter than a
     hundredth of that 99th percentile: black space and the night side do not count.
     """

@@ -89,7 +89,7 @@ def find_colour_space(name: str) -> ColourSpace:
 def colour_space_from_tags(
     where: str, interop_id: str | None, chromaticities: tuple[float, ...] | None
 ) -> ColourSpace:
-    """Return the space that an image file says it is in.
+    """Return the space that an image file declares.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ def rgb_from_xyz(space: ColourSpace) -> Array:
     Parameters
     ----------
     space : ColourSpace
-        Where to go.
+        Target.
 
     Returns
     -------

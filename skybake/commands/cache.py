@@ -81,7 +81,7 @@ def clear() -> None:
 @click.option(
     "--for-all-users",
     is_flag=True,
-    help="Let every user read what lies there, as in an image of a container.",
+    help="Let every user read the cache, as in a container image.",
 )
 @click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
 def warm(presets: tuple[str, ...], for_all_users: bool, quiet: bool) -> None:
@@ -92,8 +92,8 @@ def warm(presets: tuple[str, ...], for_all_users: bool, quiet: bool) -> None:
       skybake cache warm
       SKYBAKE_CACHE_DIR=/opt/skybake skybake cache warm --for-all-users --preset earth --preset mars
 
-    What lies in the cache is its owner's alone. With --for-all-users others can read it, and use it
-    where it is root's.
+    The cache is private to its owner. With --for-all-users other users can read it, and use it if
+    root owns it.
     """
     check_memory()
     started = time.perf_counter()
@@ -106,7 +106,7 @@ def warm(presets: tuple[str, ...], for_all_users: bool, quiet: bool) -> None:
     from skybake.baking.warm import compile_all, solve
     from skybake.preset import load_preset
 
-    # A fault of the last one shall be told before the first is solved.
+    # An error in the last one is to be reported before the first is solved.
     for preset in presets:
         load_preset(preset)
     say("compiling kernels")

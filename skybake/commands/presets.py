@@ -1,4 +1,4 @@
-"""``skybake presets``: what worlds there are, and making one's own."""
+"""``skybake presets``: the worlds that there are, and making new ones."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def presets() -> None:
 
 @presets.command("list")
 def list_() -> None:
-    """List the presets, one a line: name and title."""
+    """List the presets, one per line: name and title."""
     from skybake.preset import load_document, preset_names
 
     names = preset_names()
@@ -152,7 +152,7 @@ def plot(name: str, output: Path | None, **_: Any) -> None:
         from skybake.baking.paths import world_name
         from skybake.inspect.plot import plot_planet
     except ImportError as error:
-        raise InputError("plot: needs matplotlib, as from pip install 'skybake[plot]'") from error
+        raise InputError("plot: needs matplotlib; try pip install 'skybake[plot]'") from error
     output = output or Path(f"{world_name(planet)}.png")
     plot_planet(planet, output)
     click.echo(output)

@@ -59,7 +59,7 @@ def _wavelengths(text: str) -> tuple[float, ...]:
     type=click.Choice((*values.METHODS, "reference")),
     default="full",
     show_default=True,
-    help="Light transport, as of render, or unbiased paths with their standard errors.",
+    help="Light transport, as for render, or an unbiased path tracer with standard errors.",
 )
 @click.option(
     "--samples",

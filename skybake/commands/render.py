@@ -44,7 +44,7 @@ def render(**options: Any) -> None:
 
     Angles are 5deg, 0.1rad, 30arcmin or bare degrees; lengths 2km, 1500m, 30000ft or bare metres.
     +Y is up and -Z north; azimuths are compass bearings, 0 = north, clockwise. The middle of an
-    equirect map faces south, where the sun stands by default; its left half is the east.
+    equirect map faces south, where the sun is by default; its left half is the east.
 
     \b
     Examples:

@@ -49,7 +49,7 @@ SOME_FAILED = 3
     "--frames",
     metavar="FRAMES",
     type=values.frames,
-    help="Frame numbers, as 1-96, 1-100x5,150 or 0001-0096.",
+    help="Frame numbers, such as 1-96, 1-100x5,150 or 0001-0096.",
 )
 @click.option(
     "--only",
@@ -62,7 +62,7 @@ SOME_FAILED = 3
     "--exposure-curve",
     metavar="FILE.csv",
     type=click.Path(path_type=Path),
-    help="Let 1.0 stand for 1.2 * 2^ev cd/m2, with columns frame and ev, straight between rows.",
+    help="Let 1.0 stand for 1.2 * 2^ev cd/m2, with columns frame and ev, linear between rows.",
 )
 @click.option(
     *("-o", "--output"),
@@ -93,16 +93,16 @@ SOME_FAILED = 3
     metavar="N",
     type=click.IntRange(1, 256),
     show_default="one for each CPU",
-    help="Frames that are baked at once.",
+    help="Frames that are baked at the same time.",
 )
 @click.option(
     "--dask",
     metavar="ADDRESS",
-    help="Bake on the workers of a Dask scheduler, as tcp://host:8786; "
+    help="Bake on the workers of a Dask scheduler, such as tcp://host:8786; "
     "needs pip install 'skybake[dask]'.",
 )
 @emit_options
-@click.option("--dry-run", is_flag=True, help="Print the frames and bake none.")
+@click.option("--dry-run", is_flag=True, help="Print the frames and bake nothing.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object.")
 @click.option(
     "--progress",
@@ -142,8 +142,8 @@ def sequence(**options: Any) -> None:
         _needs(options),
     )
     if options["frames"] is None and options["start"] is None:
-        # Told before the engine is imported, which takes longer than all checks.
-        raise click.UsageError("--frames: is needed, as 1-96")
+        # Reported before the engine is imported, which takes longer than all checks.
+        raise click.UsageError("--frames: is required, such as 1-96")
     plan = _plan_from_options(context)
     if is_asked(options):
         emit(context, plan)
@@ -246,7 +246,7 @@ def _bake(plan: Plan, part: Plan, products: Products, options: Mapping[str, Any]
 
 
 def _write_products(products: Products, result: SequenceResult) -> list[Path]:
-    """Write them; where frames failed, their failure stays the one that counts."""
+    """Write them; where frames failed, their failure determines the exit status."""
     try:
         return products.write(result)
     except SkybakeError as error:

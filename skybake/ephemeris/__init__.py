@@ -1,1 +1,1 @@
-"""Where the sun stands: from a place and a time to elevation and azimuth."""
+"""The sun's position: from a place and a time to elevation and azimuth."""

@@ -28,7 +28,7 @@ class Clock:
     solar_longitude : float or None
         Season of Mars; times are then of local true solar time. [rad]
     refraction : bool
-        Whether the sun is lifted as by Earth's air.
+        Whether the sun is raised by refraction in Earth's atmosphere.
     """
 
     place: Place
@@ -43,7 +43,7 @@ class Clock:
         return self.place.planet == "mars"
 
     def check(self, texts: Mapping[str, str]) -> None:
-        """Refuse what has no effect beside the rest, and ask for what is missing.
+        """Refuse what has no effect with the rest, and require what is missing.
 
         Parameters
         ----------
@@ -73,7 +73,7 @@ class Clock:
             if value is not None:
                 raise ArgumentError(
                     f"{{{name}}}: cannot be combined with {{solar_longitude}}, "
-                    "which goes with solar time"
+                    "which needs times in solar time"
                 )
 
     def _check_kinds(self, texts: Mapping[str, str]) -> None:
@@ -90,18 +90,18 @@ class Clock:
             if kinds[name] == "local" and self.zone is None:
                 raise ArgumentError(
                     f"{{{name}}}: needs an offset, as {{text}}Z or {{text}}+02:00, or {{zone}}, "
-                    "since clocks differ",
+                    "since local times differ",
                     text=text,
                 )
         found = set(kinds.values())
         if self.day is not None and found <= {"local", "absolute"}:
-            raise ArgumentError(f"{{day}}: needs {{{next(iter(texts))}}} sunset or the like")
+            raise ArgumentError(f"{{day}}: needs {{{next(iter(texts))}}} sunset or another event")
         # The labels of a span are by the local clock in any case.
         if self.zone is not None and len(texts) == 1 and found == {"absolute"}:
             raise ArgumentError("{zone}: needs a time without an offset of its own")
 
     def bounds(self, texts: Mapping[str, str]) -> tuple[tzinfo | None, datetime, datetime]:
-        """Return the local clock, the first time and the last, of what `check` has let pass.
+        """Return the local clock, the first time and the last, of what `check` has accepted.
 
         Raises
         ------
@@ -124,7 +124,7 @@ class Clock:
 
 @contextmanager
 def argument(name: str) -> Iterator[None]:
-    """Put the name of an argument before the fault of its value."""
+    """Put the name of an argument before the error in its value."""
     try:
         yield
     except ArgumentError:

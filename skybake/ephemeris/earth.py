@@ -14,13 +14,13 @@ from skybake.ephemeris.place import Place
 _DUBLIN_EPOCH = datetime(1899, 12, 31, 12, tzinfo=UTC)
 
 # Sæmundsson's formula has a pole at -5.1 deg, and no light of a sun below this grazes
-# air that is dense enough to bend it much.
+# an atmosphere that is dense enough to bend it much.
 _LIFT_FADES = math.radians(-1.0)
 _LIFT_ENDS = math.radians(-5.0)
 
 
 def sun_position(time: datetime, place: Place) -> tuple[float, float]:
-    """Return where the sun's centre stands, as if there were no air.
+    """Return the position of the sun's centre, without refraction.
 
     Parameters
     ----------
@@ -47,13 +47,13 @@ def sun_position(time: datetime, place: Place) -> tuple[float, float]:
 
 
 def hour_angle(time: datetime, place: Place) -> float:
-    """Return how far the sun has gone past the upper meridian, -pi to pi. [rad]"""
+    """Return how far the sun has moved past the upper meridian, -pi to pi. [rad]"""
     sun, observer = _observe(time, place)
     return math.remainder(observer.sidereal_time() - sun.ra, 2.0 * math.pi)
 
 
 def refraction(elevation: float) -> float:
-    """Return by how much air at sea level lifts the sun.
+    """Return by how much refraction at sea level raises the sun.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def refraction(elevation: float) -> float:
     -----
     Sæmundsson (1986, Sky and Telescope 72, 70), for 1010 hPa and 10 °C, with Meeus's
     term that makes it vanish in the zenith: 29' at 0, 34' for a sun that is seen on the
-    horizon. From -1 deg to -5 deg, where nobody sees the sun, a smoothstep of fifth
+    horizon. From -1 deg to -5 deg, where the sun is not visible, a smoothstep of fifth
     degree fades it out, so value, slope and curvature have no step, and the apparent
     elevation never falls while the geometric one rises.
     """

@@ -9,7 +9,7 @@ from skybake.ephemeris.earth import hour_angle, sun_position
 from skybake.ephemeris.place import Place
 from skybake.errors import InputError
 
-# The disc's upper edge, 16' above its centre, is seen on the horizon, where air lifts it
+# The disc's upper edge, 16' above its centre, is seen on the horizon, where refraction lifts it
 # by 34': the almanacs' convention.
 _RISEN = math.radians(-50.0 / 60.0)
 
@@ -27,14 +27,14 @@ _MORNING = ("sunrise", "civil-dawn", "nautical-dawn", "astronomical-dawn")
 _VERBS = {"sunrise": "rise", "sunset": "set"}
 
 EVENTS = (*_CROSSINGS, "noon", "midnight")
-"""What `event_time` knows."""
+"""Events of `event_time`."""
 
 _DAY = timedelta(days=1)
 _SECOND = timedelta(seconds=1)
 
 
 def mean_solar_zone(place: Place) -> tzinfo:
-    """Return the clock of a place that goes by its own mean sun."""
+    """Return the clock of mean solar time at a place."""
     return timezone(timedelta(seconds=round(place.longitude / (2.0 * math.pi) * 86_400.0)))
 
 

@@ -147,7 +147,7 @@ def horizontal(latitude: float, declination: float, hour_angle: float) -> tuple[
 def sun_in_season(
     solar_longitude: float, hour_angle: float, latitude: float
 ) -> tuple[float, float]:
-    """Return where the sun stands at a season and a local true solar time.
+    """Return the sun's position at a season and a local true solar time.
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ def sun_in_season(
     -----
     The direction to the sun and the vertical are both measured from the equator's plane.
     Mars24 puts the planetographic latitude of the point below the sun in place of the
-    former, and tells elevations that are up to 0.25 deg off.
+    former, and gives elevations that are up to 0.25 deg off.
     """
     vertical = planetographic_latitude(latitude)
     return horizontal(vertical, declination(solar_longitude), hour_angle)

@@ -1,4 +1,4 @@
-"""Where the sun stands at a time and a place, on Earth and on Mars."""
+"""The sun's position at a time and a place, on Earth and on Mars."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ Spread = Callable[[float, float], list[float]]
 
 @dataclass(frozen=True)
 class Moment:
-    """A time and where the sun stands then.
+    """A time and the sun's position.
 
     Attributes
     ----------
     time : datetime or None
         In UTC; None for a time of day in a season of Mars.
     label : str
-        The time for people, by the local clock if it is known.
+        Human-readable time, by the local clock if it is known.
     place : Place
         Where the sun is seen from.
     sun_elevation : float
@@ -43,7 +43,7 @@ class Moment:
     sun_azimuth : float
         Compass bearing: 0 = north, clockwise. [rad]
     attributes : mapping of str to str or float
-        What a file says of time and place, see docs/formats.md.
+        Time and place as files state them, see docs/formats.md.
     """
 
     time: datetime | None
@@ -63,7 +63,7 @@ def sun_at(
     solar_longitude: float | None = None,
     refraction: bool = False,
 ) -> Moment:
-    """Return where the sun stands.
+    """Return the sun's position at a time and a place.
 
     Parameters
     ----------
@@ -80,12 +80,12 @@ def sun_at(
     solar_longitude : float, optional
         The season on Mars, Ls, from 0 to 2 pi. [rad]
     refraction : bool, optional
-        Lift the sun as Earth's air does.
+        Raise the sun by refraction in Earth's atmosphere.
 
     Raises
     ------
     ArgumentError
-        If there is no such time, or an argument that has no effect beside the others.
+        If there is no such time, or an argument has no effect with the others.
     """
     clock = Clock(place, zone, day, solar_longitude, refraction)
     return _moments(clock, {"time": _text(time)}, lambda start, _: [start])[0]

@@ -1,4 +1,4 @@
-"""Where an observer stands on a planet."""
+"""Where an observer is on a planet."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from skybake.errors import ArgumentError
 
 PLANETS = ("earth", "mars")
-"""Planets from which it is known where the sun stands."""
+"""Planets for which the sun's position is known."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class Place:
             )
 
     def __str__(self) -> str:
-        """Degrees for people."""
+        """Human-readable degrees."""
         return (
             f"{abs(math.degrees(self.latitude)):.2f}{'S' if self.latitude < 0.0 else 'N'} "
             f"{abs(math.degrees(self.longitude)):.2f}{'W' if self.longitude < 0.0 else 'E'}"
@@ -76,7 +76,7 @@ SITES = {
     "utopia": _site(47.64, 134.29),
 }
 """Planetocentric latitude and east longitude (IAU 2000), to 0.05 deg, of where these
-stand, as their missions have it: Pathfinder, Viking 1 (Michael et al. 1976), InSight
+landed, as their missions report: Pathfinder, Viking 1 (Michael et al. 1976), InSight
 (Golombek et al. 2020), Curiosity, Phoenix, Spirit, Perseverance, Opportunity and Viking 2;
 and of the mountain (USGS Gazetteer of Planetary Nomenclature)."""
 
@@ -123,14 +123,14 @@ def find_place(
 
 
 def check_planet(place: Place, planet: str | None) -> None:
-    """Refuse a sun that is seen from one planet for the air of another.
+    """Refuse a sun that is seen from one planet for the atmosphere of another.
 
     Parameters
     ----------
     place : Place
         Where the sun is seen from.
     planet : str or None
-        Whose air it is; None if that is not known.
+        Planet of the atmosphere; None if that is not known.
 
     Raises
     ------
@@ -145,4 +145,4 @@ def check_planet(place: Place, planet: str | None) -> None:
         problem = "is on Mars"
     else:
         problem = "is on Earth, a place on Mars needs {site} or {solar_longitude}"
-    raise ArgumentError(f"{{place}}: {problem} (the preset is of {{air}})", air=planet)
+    raise ArgumentError(f"{{place}}: {problem} (the preset is of {{planet}})", planet=planet)

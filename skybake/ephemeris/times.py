@@ -39,7 +39,7 @@ def find_zone(name: str) -> ZoneInfo:
     Raises
     ------
     InputError
-        If the time zone database has no such region; the message tells the nearest.
+        If the time zone database has no such region; the message names the nearest.
     """
     try:
         return ZoneInfo(name)
@@ -200,13 +200,13 @@ def _from_local(moment: datetime, zone: tzinfo) -> datetime:
         return first.astimezone(UTC)
     if first.astimezone(UTC).astimezone(zone).replace(tzinfo=None) == moment:
         raise InputError(
-            f"is shown twice in {zone}, write {local_text(first)} or {local_text(second)}, "
+            f"is ambiguous in {zone}, write {local_text(first)} or {local_text(second)}, "
             f"got {moment.isoformat()!r}"
         )
     before, after = first.utcoffset() or timedelta(), second.utcoffset() or timedelta()
     change = _change(second.astimezone(UTC), first.astimezone(UTC), zone)
     raise InputError(
-        f"is never shown in {zone}, where clocks go from {(change + before):%H:%M} to "
+        f"does not exist in {zone}, where clocks change from {(change + before):%H:%M} to "
         f"{(change + after):%H:%M}, got {moment.isoformat()!r}"
     )
 

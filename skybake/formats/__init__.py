@@ -1,1 +1,1 @@
-"""Image files: the one place that knows OpenImageIO."""
+"""Image files: the only package that uses OpenImageIO."""

@@ -13,7 +13,7 @@ COMPRESSIONS = (
     *("none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"),
     *("htj2k256", "htj2k32", "zstd"),
 )
-"""Names that OpenEXR's writer knows; it takes any other for zip without a word."""
+"""Names that OpenEXR's writer knows; it silently takes any other for zip."""
 
 ZIP_LEVEL = 2.0
 """Level of zip unless another is asked for: of a sky it makes files 1 to 4 % larger than level 4

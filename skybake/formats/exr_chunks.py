@@ -21,7 +21,7 @@ def find_chunk_fault(path: Path, height: int) -> str | None:
     Parameters
     ----------
     path : Path
-        A file of one part whose chunks lie from top to bottom and without gaps.
+        A file of one part whose chunks are ordered from top to bottom without gaps.
     height : int
         Rows of the picture.
 
@@ -61,7 +61,7 @@ def _read_name(file: BinaryIO) -> bytes:
 
 
 def _read_table(file: BinaryIO, height: int) -> tuple[int, ...] | None:
-    """Read places of chunks, the first of which lies right behind the table. [byte]"""
+    """Read places of chunks, the first of which directly follows the table. [byte]"""
     start = file.tell()
     (first,) = struct.unpack("<Q", file.read(8))
     count, rest = divmod(first - start, 8)

@@ -33,7 +33,7 @@ def half_rows(
     ndarray of float16
         The halves.
     float
-        The largest magnitude among `rows`; not a number if there is one that is none.
+        The largest magnitude among `rows`; NaN if one of them is.
     """
     rows = np.ascontiguousarray(rows)
     out = np.empty(rows.shape, np.float16)

@@ -119,7 +119,7 @@ def header_lines(spec: MapSpec) -> bytes:
     EXPOSURE is the factor from radiance in W m⁻² sr⁻¹ to the value in the file, and
     Radiance's luminance is 179 times radiance, so 179 / white_luminance makes its
     tools report our luminance. Readers for rendering leave the values as they are.
-    Comments carry the other attributes. A long one goes on under the same name in the
+    Comments carry the other attributes. A long one continues under the same name in the
     next line, as readers have lines of 128 bytes and more.
     """
     primaries = " ".join(f"{value:.5g}" for value in spec.colour_space.chromaticities)

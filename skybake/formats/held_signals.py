@@ -23,7 +23,7 @@ def signals_held() -> Iterator[None]:
     """Hold back signals that end the process until the block has ended.
 
     Python handles signals in its main thread only. On another thread the block holds
-    back `wait_until_released` instead, which stands before an exit.
+    back `wait_until_released` instead, which is called before an exit.
     """
     with _holding:
         if threading.current_thread() is not threading.main_thread():

@@ -1,7 +1,7 @@
 """Hidden folders beside targets, in which files are written before they take their names.
 
-A folder is locked as long as its process lives. That tells what a killed process left,
-even to another container, where the number of a process would not.
+A folder is locked as long as its process lives. This identifies what a killed process left,
+even from another container, where a process number would not.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ def name_hidden_folder(target: Path) -> Path:
 
 
 def lock_hidden_folder(folder: Path) -> int | None:
-    """Make a folder, for its owner only, and lock it until its process ends.
+    """Make a folder, private to its owner, and lock it until its process ends.
 
     Returns
     -------
     int or None
-        The descriptor that holds the lock, to be closed when the folder is gone; None
+        The descriptor that holds the lock, to be closed when the folder is removed; None
         where there are no locks, so that nothing is ever a leftover.
     """
     while True:
@@ -65,7 +65,7 @@ def prefix(target: Path) -> str:
 
 
 def is_ours(folder: Path) -> bool:
-    """Whether a folder, which is no link, is this user's and nobody else could write to it."""
+    """Whether a folder, not a link, is this user's and no other user could write to it."""
     try:
         status = folder.lstat()
     except OSError:
@@ -100,7 +100,7 @@ def _lock(folder: Path) -> int | None:
     BlockingIOError
         If a living process holds it.
     FileNotFoundError
-        If it is no more.
+        If it has been removed.
     """
     if sys.platform == "win32":
         return None

@@ -42,7 +42,7 @@ def draw_text(
     text : str
         One line.
     x, baseline : int
-        Column of the left edge, row that the letters stand on. [pixel]
+        Column of the left edge, row of the baseline. [pixel]
     size : int
         Height of the letters. [pixel]
     colour : tuple of 3 float

@@ -72,7 +72,7 @@ class ImageFile:
             with suppress(RuntimeError):
                 rows = self._read(first, last)
             if rows is None:
-                raise InputError(f"{self._path}: must be whole, got {_reason(self._source)}")
+                raise InputError(f"{self._path}: must be complete, got {_reason(self._source)}")
             if not np.isfinite(rows).all():
                 raise InputError(f"{self._path}: pixels must be finite, got NaN or infinity")
             yield rows
@@ -126,7 +126,7 @@ def read_attributes(path: Path) -> dict[str, Any]:
     """
     source = _open(path)
     if source.format_name() != _FORMATS.get(path.suffix.lower()):
-        raise InputError(f"{path}: must be what its suffix says, got {source.format_name()}")
+        raise InputError(f"{path}: format must match the suffix, got {source.format_name()}")
     source.close()
     return _attributes(path, source)
 
@@ -160,7 +160,7 @@ def _radiance_attributes(path: Path) -> dict[str, Any]:
     if not 0.0 <= exposure < math.inf:
         raise InputError(f"{path}: EXPOSURE must be at least 0 and finite, got {exposure:g}")
     attributes: dict[str, Any] = dict(header)
-    # Some programs write EXPOSURE=0 where they mean that they do not know it.
+    # Some programs write EXPOSURE=0 for an unknown exposure.
     if exposure > 0.0:
         attributes["whiteLuminance"] = RADIANCE_EFFICACY / exposure
     if primaries:

@@ -1,10 +1,10 @@
 """Several files that take their names together.
 
 No file system renames several files at once. While they take their names one by one, a
-journal in the first one's hidden folder says which, and each hidden folder holds what
-stood under its name before. Where the journal outlives the renames, because one failed
-or the process was killed, they are taken back. Without the journal there is nothing to
-take back: either no file has its name yet, or all have.
+journal in the first one's hidden folder lists them, and each hidden folder holds the file
+that had the name before. If the journal outlives the renames, because one failed or the
+process was killed, they are undone. Without the journal there is nothing to undo: either
+no file has its name yet, or all have.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _FIRST = "first"
 
 @dataclass(frozen=True)
 class Rename:
-    """A whole file and the name that it is to take.
+    """A complete file and the name that it is to take.
 
     Attributes
     ----------
@@ -41,12 +41,12 @@ class Rename:
 
     @property
     def new(self) -> Path:
-        """The whole file."""
+        """The complete file."""
         return self.folder / f"whole{self.target.suffix}"
 
     @property
     def before(self) -> Path:
-        """What stood under the name."""
+        """The file that had the name before."""
         return self.folder / f"before{self.target.suffix}"
 
 
@@ -56,7 +56,7 @@ def rename_all(renames: Sequence[Rename]) -> None:
     Parameters
     ----------
     renames : sequence of Rename
-        At least one. Their files are whole and on stable storage.
+        At least one. Their files are complete and on stable storage.
 
     Notes
     -----
@@ -69,7 +69,7 @@ def rename_all(renames: Sequence[Rename]) -> None:
         _keep_before(rename)
     _write_journal(renames)
     try:
-        # What was added last tells of what was added before, and is there first.
+        # Files that were added last hold digests of the others, and appear first.
         for rename in reversed(renames):
             rename.new.replace(rename.target)
         (renames[0].folder / JOURNAL).unlink()
@@ -84,12 +84,12 @@ def is_unfinished(renames: Sequence[Rename]) -> bool:
 
 
 def undo_unfinished(folder: Path) -> None:
-    """Take back the renames of the set that a dead process's hidden folder belongs to.
+    """Undo the renames of the set that a dead process's hidden folder belongs to.
 
     Raises
     ------
     OSError
-        If one could not be taken back; the journal then stays.
+        If one could not be undone; the journal then stays.
     """
     if not is_ours(folder):
         return
@@ -101,7 +101,7 @@ def undo_unfinished(folder: Path) -> None:
 
 
 def _keep_before(rename: Rename) -> None:
-    """Give what stands under a target's name a second one."""
+    """Give the file that has a target's name a second one."""
     if not rename.target.exists():
         return
     try:
@@ -136,7 +136,7 @@ def _write(path: Path, text: str) -> None:
 
 
 def _undo(first: Path) -> None:
-    """Take back the renames of a journal, as often as it takes."""
+    """Undo the renames of a journal, which may have been begun before."""
     journal = first / JOURNAL
     for entry in json.loads(journal.read_text("utf-8", "surrogateescape")):
         rename = _rename_of(entry, first.parent)
@@ -150,7 +150,7 @@ def _undo(first: Path) -> None:
 
 
 def _rename_of(entry: dict[str, Any], parent: Path) -> Rename:
-    """Return an entry of a journal, in which a file only ever takes a name beside it."""
+    """Return an entry of a journal, which may only give a file a name in the same folder."""
     target = Path(os.path.normpath(parent / str(entry["target"])))
     folder = target.with_name(Path(str(entry["folder"])).name)
     if not folder.name.startswith(prefix(target)):

@@ -1,4 +1,4 @@
-"""Scanlines in and out of OpenImageIO, which reports faults in return values only."""
+"""Scanlines in and out of OpenImageIO, which reports errors in return values only."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ class ScanlineWriter:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Close, and if all went well check that the file is whole."""
+        """Close, and if all went well check that the file is complete."""
         self._output.close()
         if kind is not None:
             return

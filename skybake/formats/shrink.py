@@ -90,7 +90,7 @@ def shrunk(pixels: Pixels, max_width: int) -> Pixels:
 
 
 def _empty(width: int, height: int, first: int, rows: int) -> OpenImageIO.ImageBuf:
-    """Return empty rows of a picture that know where they lie in the whole."""
+    """Return empty rows of a picture with their place in it."""
     spec = OpenImageIO.ImageSpec(width, rows, 3, "float")
     spec.y = first
     spec.full_x, spec.full_y, spec.full_width, spec.full_height = 0, 0, width, height

@@ -1,4 +1,4 @@
-"""What a map file holds beside its pixels."""
+"""What a map file holds besides its pixels."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Tagged(Protocol):
 
 @dataclass(frozen=True)
 class MapSpec:
-    """What a map file holds beside its pixels.
+    """What a map file holds besides its pixels.
 
     Attributes
     ----------

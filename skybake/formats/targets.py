@@ -58,7 +58,7 @@ def write_error(path: Path, temporary: Path, message: str) -> OutputError:
     reason = message.replace(str(temporary), str(path)).strip().replace("\n", "; ")
     if shutil.disk_usage(temporary.parent).free < _FULL:
         reason = f"a full disk ({reason})"
-    return OutputError(f"{path}: must be written whole, got {reason or 'an unknown error'}")
+    return OutputError(f"{path}: cannot be written completely: {reason or 'an unknown error'}")
 
 
 def _check(path: Path, target: Path) -> None:
@@ -67,7 +67,7 @@ def _check(path: Path, target: Path) -> None:
     if target.is_dir():
         raise OutputError(f"{path}: must be a file, got a folder")
     if target.is_symlink():
-        raise OutputError(f"{path}: must be a file, got links in a circle")
+        raise OutputError(f"{path}: must be a file, got a circular link")
     if target.exists() and not target.is_file():
         raise OutputError(f"{path}: must be a regular file, got a device or pipe")
     if not os.access(target.parent, os.W_OK | os.X_OK):

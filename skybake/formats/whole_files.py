@@ -1,7 +1,7 @@
-"""Files that appear whole or not at all, one or several together.
+"""Files that appear complete or not at all, one or several together.
 
-They are written in hidden folders beside their targets, put on stable storage, and take
-their names when all of them are there, see `skybake.formats.renames`.
+They are written in hidden folders beside their targets, synced to stable storage, and take
+their names when all of them are complete, see `skybake.formats.renames`.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from skybake.formats.targets import check_target, faults_of, real_target
 
 
 class WholeFiles:
-    """Files that take their names together when the block ends, and if it raises none.
+    """Files that take their names together when the block ends, or not at all if it raises.
 
     Notes
     -----
-    Signals that end the process wait while files take their names. If one cannot, those
-    before it are taken back and what stood under their names is there again. A process
-    that is killed meanwhile leaves that to the next one that writes any of the files.
+    Signals that end the process are held back while files take their names. If a rename
+    fails, those before it are undone and the former files have their names again. If the
+    process is killed meanwhile, the next one that writes any of the files does that.
     """
 
     def __init__(self) -> None:
@@ -102,7 +102,7 @@ class WholeFiles:
                 self._clear()
 
     def _clear(self) -> None:
-        # What could not be taken back needs its folders until somebody can.
+        # What could not be undone needs its folders until a later process can.
         if not is_unfinished(self._renames):
             for rename in self._renames:
                 shutil.rmtree(rename.folder, ignore_errors=True)
@@ -136,12 +136,12 @@ def replace_when_whole(path: Path) -> Iterator[Path]:
 
 
 def remove_leftovers(path: Path) -> None:
-    """Remove what dead processes left beside a target, which may be whole nevertheless.
+    """Remove what dead processes left beside a target, which may be complete nevertheless.
 
-    Sets that they had given only some of their names are taken back.
+    Sets of which only some files had taken their names are undone.
     """
     for folder in leftovers(real_target(path)):
-        # A journal that the disk has damaged is none to go by.
+        # A journal that the disk has damaged is not used.
         with suppress(OSError, ValueError, LookupError, TypeError):
             undo_unfinished(folder)
             shutil.rmtree(folder, ignore_errors=True)

@@ -34,7 +34,7 @@ def open_map(path: Path, spec: MapSpec) -> Iterator[MapWriter]:
     MapWriter
         With ``write_rows(y_begin, y_end, rows)``, float32 or float16, or its halves `ready`
         and `write_ready`, and `clamped`.
-        Calls hold no lock of the interpreter, so that rows can be computed meanwhile;
+        Calls release the interpreter's lock, so that rows can be computed meanwhile;
         bands of 256 rows keep every compression's threads busy.
 
     Raises
@@ -42,7 +42,7 @@ def open_map(path: Path, spec: MapSpec) -> Iterator[MapWriter]:
     InputError
         If the suffix or the spec asks for something that cannot be written.
     OutputError
-        If the file cannot be written whole; the target is then as it was before.
+        If the file cannot be written completely; the target is then as it was before.
     """
     with open_maps({path: spec}) as writers:
         yield writers[path]
@@ -76,7 +76,7 @@ def open_maps(
         check_map_path(path)
     with ExitStack() as stack:
         whole_files = stack.enter_context(WholeFiles()) if files is None else files
-        # Left in reverse: every file is closed and found whole before the first takes its name.
+        # Left in reverse: every file is closed and checked before the first takes its name.
         writers: dict[Path, MapWriter] = {}
         for path, spec in specs.items():
             temporary = whole_files.add(path)

@@ -29,14 +29,14 @@ class Image:
     Attributes
     ----------
     pixels : ndarray of float32, shape (row, column, 3) or (face, row, column, 3)
-        Linear and scene-referred. Row 0 looks up; of a cubemap in six pictures the faces
+        Linear and scene-referred. Row 0 is at the top; of a cubemap in six pictures the faces
         come in the order +X -X +Y -Y +Z -Z.
     scene : Scene
         What they show; its settings say where pixels look and what the numbers mean.
     light : Light
         Directions and illuminances.
     metadata : mapping of str to Any
-        What the file of the map would say, see docs/formats.md.
+        Attributes of the file of the map, see docs/formats.md.
     """
 
     pixels: Pixels
@@ -45,7 +45,7 @@ class Image:
     metadata: Mapping[str, Any]
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
-        """Return the pixels, so that `numpy.asarray` of the image is what one expects."""
+        """Return the pixels, so that `numpy.asarray` of the image returns them."""
         return np.array(self.pixels, dtype=dtype, copy=copy)
 
     @property
@@ -71,7 +71,7 @@ class Image:
         Returns
         -------
         ndarray of uint8, shape (row, column, 3)
-            Code values of sRGB; six faces lie in a cross.
+            Code values of sRGB; six faces form a cross.
         """
         ev = scene_ev(self.scene) if ev is None else ev
         return code_values(self._joined(), self.encoding, ev, view)

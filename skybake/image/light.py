@@ -1,4 +1,4 @@
-"""The light of a map in figures, and the attributes by which its files tell them."""
+"""The light of a map in figures, and the attributes of files that hold them."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def attributes_from_light(light: Light) -> dict[str, Attribute]:
 
 
 def light_from_attributes(attributes: Mapping[str, Any]) -> Light:
-    """Return what the attributes of a map's file say.
+    """Return the light that the attributes of a map's file state.
 
     All numbers are of single precision, as files hold them, in their shortest decimals:
     attributes that have been in a file, of any format, give the same light as before.

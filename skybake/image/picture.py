@@ -17,7 +17,7 @@ from skybake.projection.chart import Canvas
 PREVIEW_WIDTH = 1024
 
 SURVEY_ROWS = 256
-"""Rows of an equirect map by which the light of a scene is judged."""
+"""Rows of the equirect map that the automatic exposure is computed from."""
 
 CodeValues = npt.NDArray[np.uint8]
 
@@ -25,7 +25,7 @@ CodeValues = npt.NDArray[np.uint8]
 def scene_ev(scene: Scene) -> float:
     """Exposure value at which a scene is legible, whatever the size of the map.
 
-    A map of the whole sphere is judged by all of it, a picture of a part by what it shows.
+    A map of the whole sphere is exposed for all of it, a picture of a part for what it shows.
     """
     (canvas,) = scene.settings.view.projection.glance(2 * SURVEY_ROWS).canvases()
     (part,) = canvas.parts
@@ -42,7 +42,7 @@ def show_scene(scene: Scene, show: Show, ev: float) -> None:
 
 
 def thumbnail(scene: Scene, ev: float, view: str, width: int) -> CodeValues:
-    """Picture of a scene, so wide, code values of sRGB; an equirect map of the whole sphere."""
+    """Picture of a scene in code values of sRGB; of the whole sphere an equirect map."""
     glance = _single(scene, scene.settings.view.projection.glance(width))
     return code_values(glance, scene.settings.encoding, ev, view)
 

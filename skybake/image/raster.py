@@ -130,7 +130,7 @@ def _smooth_limb(
 ) -> None:
     """Evaluate pixels at the limb by several samples each.
 
-    Seen from space the air is a thin line; within a pixel it falls from bright to black.
+    Seen from space the atmosphere is a thin line; within a pixel it falls from bright to black.
     """
     shape = pixels.shape[:2]
     across = (np.arange(LIMB_SAMPLES) + 0.5) / LIMB_SAMPLES - 0.5

@@ -1,4 +1,4 @@
-"""All that decides the pixels of a map, as its files tell it."""
+"""Everything that determines the pixels of a map, as its files state it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ HASH_ATTRIBUTE = "skybake:recipeHash"
 
 LONGEST_RECIPE = 4000
 """Length of a recipe's text in a file. OpenImageIO opens no Radiance picture with a hundred
-lines in its header, and FFmpeg 5.1 loses its way behind a text of 8191 bytes. [character]"""
+lines in its header, and FFmpeg 5.1 fails after a text of 8191 bytes. [character]"""
 
 
 def map_recipe(planet: Planet, settings: MapSettings) -> dict[str, Any]:
@@ -24,10 +24,10 @@ def map_recipe(planet: Planet, settings: MapSettings) -> dict[str, Any]:
 
 
 def recipe_text(planet: Planet, settings: MapSettings) -> str:
-    """Return the recipe of a map as JSON that every reader of its files takes.
+    """Return the recipe of a map as JSON that every reader of its files accepts.
 
-    Of a preset that makes it longer than `LONGEST_RECIPE`, as inline spectra do, only the
-    digest stands there: SHA-256 of its JSON with sorted keys, as a manifest has it whole.
+    A preset that makes it longer than `LONGEST_RECIPE`, as inline spectra do, is replaced
+    by its digest: SHA-256 of its JSON with sorted keys, which a manifest holds in full.
     """
     recipe = map_recipe(planet, settings)
     text = json.dumps(recipe)
@@ -53,9 +53,9 @@ def recipe_attributes(planet: Planet, settings: MapSettings) -> dict[str, Attrib
 
 
 def preview_texts(planet: Planet, settings: MapSettings, ev: float, view: str) -> dict[str, str]:
-    """Return what the preview of a map says of itself, in PNG's only type.
+    """Return the text chunks of a map's preview.
 
-    The exposure value is rounded to what no eye and no eight bits tell apart.
+    The exposure value is rounded to less than a visible difference.
     """
     return {
         HASH_ATTRIBUTE: recipe_hash(planet, settings),

@@ -58,7 +58,7 @@ class Scene:
     settings : MapSettings
         The observer, the sun, the colour space and the scale.
     workers : Workers, optional
-        Who does the work.
+        Threads that do the work.
     stages : Stages, optional
         What makes the table that pixels read, and may keep it.
     """

@@ -1,4 +1,4 @@
-"""What is looked at, what lights it, and how it is stored: all that decides a map but the world."""
+"""What is looked at, what lights it, and how it is stored: all of a map but its world."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ class MapSettings:
     encoding: Encoding = field(default_factory=Encoding)
 
     def recipe(self) -> dict[str, Any]:
-        """All that decides the pixels, in units for people, fit for JSON."""
+        """All that decides the pixels, in human-readable units, fit for JSON."""
         lighting, encoding = self.lighting, self.encoding
         return {
             "sun_elevation_deg": math.degrees(lighting.sun_elevation),

@@ -1,4 +1,4 @@
-"""Draws what a planet's air does to light. Needs matplotlib, the extra ``skybake[plot]``."""
+"""Plots the optics of a planet's atmosphere. Needs matplotlib, the extra ``skybake[plot]``."""
 
 from __future__ import annotations
 

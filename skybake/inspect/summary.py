@@ -135,7 +135,7 @@ def _try_all(planet: Planet) -> Medium:
 
 
 def _refusal(medium: Medium) -> str | None:
-    # Scaling only takes away from the depth, and most air needs none to be thin enough.
+    # Scaling only reduces the depth, and most atmospheres are thin enough without it.
     if vertical_optical_depth(medium).sum(axis=0).max() <= MAX_DEPTH:
         return None
     try:
@@ -153,7 +153,7 @@ def _column(constituent: object, length: float) -> float | None:
 
 
 def summary_text(planet: Planet, summary: Summary) -> str:
-    """Summary for people, in lines."""
+    """Human-readable summary, in lines."""
     width = max(len(one.name) for one in summary.constituents)
     band = "".join(f"{wavelength:>9g}" for wavelength in summary.wavelengths)
     gap = " " * max(0, len(band) - len("optical depth") - 2)

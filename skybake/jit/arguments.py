@@ -49,7 +49,7 @@ def flatten(value: Any) -> Flat:
     Returns
     -------
     Flat
-        Stands for the argument in calls of kernels.
+        Replaces the argument in calls of kernels.
 
     Raises
     ------

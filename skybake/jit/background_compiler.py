@@ -1,4 +1,4 @@
-"""Another process that compiles kernels while this one goes on."""
+"""A second process that compiles kernels in the background."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ def compile_in_background(module: str, names: frozenset[str]) -> Iterator[None]:
     module : str
         Compiles them when it is run, within `end_with_parent`.
     names : frozenset of str
-        The kernels; whoever calls one waits until the process has written it or has
-        ended, and then compiles itself what it does not find.
+        The kernels; a caller waits until the process has written one or has ended, and
+        then compiles what is missing.
     """
     if cache_folder() is not None and cpu_count() > 1 and sys.executable:
         _background.start(python_command(module), names)
@@ -50,7 +50,7 @@ def compile_in_background(module: str, names: frozenset[str]) -> Iterator[None]:
 
 
 def python_command(module: str) -> list[str]:
-    """Return a command that runs a module of skybake, and imports none of the working folder."""
+    """Return a command that runs a module of skybake without the working folder in its path."""
     home = str(Path(__file__).parents[2])
     return [sys.executable, "-P", "-c", _RUN, home, module]
 
@@ -58,8 +58,8 @@ def python_command(module: str) -> list[str]:
 def end_with_parent(work: Callable[[], None]) -> None:
     """Do what `compile_in_background` started a process for, until that one has ended.
 
-    The other end of standard input closes with whoever started this process, however
-    that ends.
+    The other end of standard input closes when the process that started this one ends,
+    however it ends.
     """
     threading.Thread(target=_exit_at_end_of_input, daemon=True).start()
     work()
@@ -82,7 +82,7 @@ def wait_for(name: str, folder: PrivateFolder, file: str) -> bool:
     folder : PrivateFolder
         Where kernels are kept.
     file : str
-        What holds it, which appears whole.
+        The file that holds it, which appears complete.
 
     Returns
     -------
@@ -120,7 +120,7 @@ class _Background:
         self.names = frozenset()
 
     def forget(self) -> None:
-        """Leave the process to the one that has started it, and let it see that one's end."""
+        """Leave the process to the one that started it, and let it notice when that one ends."""
         if self._process is not None and self._process.stdin is not None:
             self._process.stdin.close()
             self._process.returncode = 0

@@ -21,7 +21,7 @@ from skybake.jit.private_folder import NotPrivateError, PrivateFolder, open_priv
 from skybake.version import __version__
 
 UNUSED_AFTER = 30 * 86400.0
-"""Age after which the folder of another version goes, if it was not used meanwhile. [s]"""
+"""Age after which the folder of another version is removed if it was not used. [s]"""
 
 KERNEL_SUFFIX = ".kernel"
 TABLES_FOLDER = "atmospheres"
@@ -42,8 +42,8 @@ def cache_folder() -> PrivateFolder | None:
 
     It is named by a digest of the kernels' sources and of what compiles them.
     SKYBAKE_CACHE_DIR and NUMBA_CACHE_DIR take precedence over the user's cache folder.
-    A folder that others can write to is not used, since a compiled kernel is a program;
-    one that only root can write to, as in an image of a container, is.
+    A folder that other users can write to is not used, since a compiled kernel is a
+    program; one that only root can write to, as in a container image, is.
     """
     folder = _open_folder()
     if folder is not None and not folder.is_open():
@@ -57,7 +57,7 @@ def cache_folder() -> PrivateFolder | None:
 def _open_folder() -> PrivateFolder | None:
     directory = version_directory()
     if directory is None:
-        warn_of_no_cache("SKYBAKE_CACHE_DIR: kernel cache must be given without a home folder")
+        warn_of_no_cache("SKYBAKE_CACHE_DIR: kernel cache must be set without a home folder")
         return None
     try:
         is_new = not _exists(directory)
@@ -94,7 +94,7 @@ def check_cache() -> None:
         root = folder.path if folder else cache_root()
         raise OutputError(
             f"{shortened(root)}: kernel cache must be a folder that is writable for its "
-            "owner only, got one that is not; SKYBAKE_CACHE_DIR names another"
+            "owner only, got another; SKYBAKE_CACHE_DIR sets a different one"
         )
 
 
@@ -120,7 +120,7 @@ def version_directory() -> Path | None:
 
 
 def is_warm() -> bool:
-    """Whether compiled kernels of this version lie on disk."""
+    """Whether compiled kernels of this version are stored."""
     folder = cache_folder()
     return folder is not None and any(name.endswith(KERNEL_SUFFIX) for name in folder.names())
 
@@ -152,7 +152,7 @@ def cache_usage() -> list[Usage]:
 
 
 def clear_cache() -> None:
-    """Remove the folders of all versions, and nothing else that lies beside them."""
+    """Remove the folders of all versions, and nothing else."""
     for folder in _folders(cache_root()):
         shutil.rmtree(folder, ignore_errors=True)
 
@@ -170,7 +170,7 @@ def _warn_once(fault: str) -> None:
 
 def warn_of_no_cache(fault: str) -> None:
     """Warn that every process compiles by itself."""
-    warnings.warn(f"{fault}; compiling anew in every process", RuntimeWarning, stacklevel=3)
+    warnings.warn(f"{fault}; every process compiles anew", RuntimeWarning, stacklevel=3)
 
 
 def _usage(folder: Path) -> Usage:
@@ -225,7 +225,7 @@ def _remove_unused(parent: Path) -> None:
 
 @functools.cache
 def source_hash(*sources: str) -> str:
-    """Digest of what compiled kernels depend on beside the processor.
+    """Digest of what compiled kernels depend on besides the processor.
 
     That is what compiles them and some of our packages and modules, because numba does
     not notice an edit to a kernel that another file's kernel calls (numba issue 9483).
@@ -239,7 +239,7 @@ def source_hash(*sources: str) -> str:
 
 
 def _installed(package: str) -> list[str]:
-    """Names under which a package's metadata lie, which tell its version.
+    """Names of the folders of a package's metadata, which contain its version.
 
     Neither is the package imported, nor what importlib.metadata parses mail with, which
     takes a fiftieth of a render.

@@ -1,4 +1,4 @@
-"""A kernel that returns the words it was given, to see that arguments arrive as they are sent.
+"""A kernel that returns the words it was given, to check that arguments arrive as they are sent.
 
 It reads its arguments by numba's own names and follows no address, so that it returns
 wrong numbers, rather than crashes, where a version of numba passes them in another way.
@@ -78,7 +78,7 @@ def check_arguments(folder: PrivateFolder | None) -> None:
         try:
             folder.write(_FILE, add_digest(b"", _FILE))
         except OSError:
-            # Whoever cannot keep kernels either is told when the first one is written.
+            # That kernels cannot be kept is reported when the first one is written.
             return
 
 

@@ -122,7 +122,7 @@ def _check_fields(kind: Any) -> None:
 def _without_emission() -> Iterator[None]:
     """Keep numba from making machine code of each kernel that is to be linked into another.
 
-    That would take a sixth of the time, for code that nobody calls.
+    That would take a sixth of the time, for code that is never called.
     """
     codegen = cpu_target.target_context.codegen()
     engine = codegen._engine
@@ -134,7 +134,7 @@ def _without_emission() -> Iterator[None]:
 
 
 class _NoEngine:
-    """Stands where numba has LLVM's engine: what is added to it comes to nothing."""
+    """Replaces numba's LLVM engine, and discards what is added to it."""
 
     def __init__(self) -> None:
         self._nowhere = ctypes.c_void_p()

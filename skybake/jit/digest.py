@@ -1,8 +1,8 @@
 """Content behind a digest of itself and of what it is for.
 
-What was cut short, was damaged, or lies under a name that is not its own has another
-digest, and is made anew instead of being used. The digest is no signature: who may write
-the files is settled by `skybake.jit.private_folder`.
+What was truncated, damaged, or stored under a name that is not its own has another
+digest, and is made anew instead of being used. The digest is not a signature: who may write
+the files is checked by `skybake.jit.private_folder`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The last few results of something dear, each made once however many threads ask for it."""
+"""The last few results of something expensive, each computed once for all threads."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Value = TypeVar("Value")
 
 
 class Kept(Generic[Key, Value]):
-    """Results by key; those that were not asked for longest go first.
+    """Results by key; the least recently used are dropped first.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class Kept(Generic[Key, Value]):
     def get(self, key: Key, make: Callable[[], Value]) -> Value:
         """Return the result of a key, made now if it is not there.
 
-        Several threads that ask for one key wait for the first of them. If that one fails or
+        Several threads that need one key wait for the first of them. If that one fails or
         is cancelled, the next makes the result itself.
         """
         while True:

@@ -91,7 +91,7 @@ def _link(machine_code: MachineCode) -> int:
     # Kernels call the C library's mathematics.
     name = f"{symbol} {next(_numbers)}"
     library = builder.add_current_process().link(_linker(), name)
-    # Its code goes when the library does.
+    # Its code is freed with the library.
     _libraries.append(library)
     return int(library[symbol])
 

@@ -1,6 +1,6 @@
-"""Folders in which nobody but their owner and root can place or change a file.
+"""Folders in which only their owner and root can create or change a file.
 
-Compiled kernels are programs: who can write one into a folder runs code as whoever reads it.
+Compiled kernels are programs: whoever can write one can run code as the user who reads it.
 So a folder is opened once, level by level from the root and through no symbolic link, each
 level is judged by its open descriptor, and files are named relative to the last one. What
 others exchange afterwards is not looked at again.
@@ -31,7 +31,7 @@ _LEFTOVER = ".partial"
 
 
 class NotPrivateError(Exception):
-    """Somebody else may write to a folder, or to one above it; says which and why."""
+    """Another user may write to a folder, or to one above it; says which and why."""
 
 
 class PrivateFolder:
@@ -46,7 +46,7 @@ class PrivateFolder:
     def __init__(self, path: Path, descriptor: int) -> None:
         self.path = path
         self._place: int | Path = descriptor if _RELATIVE else path
-        # Where names are not relative to a folder, they are whole.
+        # Where names cannot be relative to a folder, they are full paths.
         self._above = descriptor if _RELATIVE else None
         self._identity = _state(self._place)
         self._remove_leftovers()
@@ -86,7 +86,7 @@ class PrivateFolder:
         -------
         bytes or None
             None if it is missing or cannot be read, is no regular file, belongs to another
-            user than this one or root, or may be written by others.
+            user than this one or root, or may be written by other users.
         """
         try:
             descriptor = os.open(self._name(name), os.O_RDONLY | _FILE, dir_fd=self._above)
@@ -107,7 +107,7 @@ class PrivateFolder:
             os.close(descriptor)
 
     def write(self, name: str, content: bytes) -> None:
-        """Write a file that only this user can read, whole or not at all.
+        """Write a file that only this user can read, completely or not at all.
 
         Raises
         ------
@@ -137,7 +137,7 @@ class PrivateFolder:
         Raises
         ------
         NotPrivateError
-            If others may write to it.
+            If other users may write to it.
         OSError
             If it cannot be opened.
         """
@@ -151,7 +151,7 @@ class PrivateFolder:
         os.utime(self._place)
 
     def share(self) -> None:
-        """Let everybody read what is in it, and nobody write."""
+        """Let every user read what is in it, and no other user write."""
         self.path.chmod(0o755)
         for name in self.names():
             path = self.path / name
@@ -221,8 +221,8 @@ def open_private_folder(path: Path) -> PrivateFolder:
     ------
     NotPrivateError
         If it, or a folder above it, belongs to another user than this one or root, or
-        may be written by its group or by others. A folder above that belongs to root
-        may be, if only the owner of a file can remove it there, as in /tmp.
+        may be written by its group or by other users. A parent that belongs to root may be,
+        if only the owner of a file can remove it there, as in /tmp.
     OSError
         If it cannot be made or opened.
     """

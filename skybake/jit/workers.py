@@ -30,7 +30,7 @@ def cpu_count() -> int:
 
 
 class Workers:
-    """CPUs that share rows of work, and a way to stop them.
+    """Threads that share rows of work, and can be stopped.
 
     Parameters
     ----------
@@ -38,11 +38,11 @@ class Workers:
         How many; default all that the process may use. One is the caller's own thread,
         which suits callers that are themselves several threads.
     cancel : threading.Event, optional
-        When it is set, work that waits is given up.
+        When it is set, work that has not begun is cancelled.
 
     Notes
     -----
-    Work must not ask the same workers for more: all of them could wait for each other.
+    Work must not give more work to the same workers: all of them could wait for each other.
     """
 
     def __init__(self, count: int | None = None, cancel: Event | None = None) -> None:
@@ -61,12 +61,12 @@ class Workers:
         return Workers(self._count, cancel)
 
     def check(self) -> None:
-        """Raise a `CancelledError` if the work shall stop."""
+        """Raise a `CancelledError` if the work is to stop."""
         if self._cancel is not None and self._cancel.is_set():
             raise CancelledError("cancelled")
 
     def shares(self, most: int) -> int:
-        """Into how many shares work is best cut: few where the caller does all of them."""
+        """Into how many shares work is best divided: few where the caller does all of them."""
         return max(1, most // LONE_SHARES) if self.count == 1 else most
 
     def run_rows(self, rows: int, work: Callable[[int, int], object], *, chunk: int = 1) -> None:
@@ -141,7 +141,7 @@ class Workers:
 _all_workers: weakref.WeakSet[Workers] = weakref.WeakSet()
 
 ALL_CPUS = Workers()
-"""What works for whoever names no others."""
+"""The default of whoever is given no workers."""
 
 
 def _forget_threads() -> None:

@@ -1,4 +1,4 @@
-"""Changes of a preset as people say them: ozone by its column, haze by how far one sees."""
+"""Changes of a preset in everyday terms: ozone by its column, haze by its visibility."""
 
 from __future__ import annotations
 

@@ -79,7 +79,7 @@ def build_medium(planet: Planet, wavelengths: Array, bandwidth: float = BANDWIDT
     Raises
     ------
     PresetError
-        If a wavelength lies outside the preset's spectra, or a phase function is
+        If a wavelength is outside the preset's spectra, or a phase function is
         not normalised.
     """
     r_top = planet.radius + planet.atmosphere_top

@@ -60,7 +60,7 @@ def build_phase(phase: Phase, wavelengths: Array) -> Array:
     Raises
     ------
     PresetError
-        If a wavelength lies outside the preset's spectra, or a table's integral
+        If a wavelength is outside the preset's spectra, or a table's integral
         over the sphere is not 1 within 1 %.
     """
     if isinstance(phase, TabulatedPhase):

@@ -31,7 +31,7 @@ def eval_spectrum(spectrum: Spectrum, wavelengths: Array) -> Array:
     Raises
     ------
     PresetError
-        If a wavelength lies outside the nodes.
+        If a wavelength is outside the nodes.
     """
     if not spectrum.wavelength:
         return np.full(len(wavelengths), spectrum.values[0])
@@ -59,7 +59,7 @@ def eval_band_mean(spectrum: Spectrum, wavelengths: Array, bandwidth: float) -> 
     Raises
     ------
     PresetError
-        If a centre lies outside the nodes.
+        If a centre is outside the nodes.
     """
     if not spectrum.wavelength or bandwidth <= 0.0:
         return eval_spectrum(spectrum, wavelengths)
@@ -96,7 +96,7 @@ def star_irradiance(star: Star, wavelengths: Array, bandwidth: float = BANDWIDTH
     Raises
     ------
     PresetError
-        If a wavelength lies outside the star's spectrum.
+        If a wavelength is outside the star's spectrum.
     """
     return star.dilution * eval_band_mean(star.irradiance, wavelengths, bandwidth)
 
@@ -145,7 +145,7 @@ def limb_darkening(star: Star, wavelengths: Array) -> Array:
     Raises
     ------
     PresetError
-        If a wavelength lies outside the coefficients' nodes.
+        If a wavelength is outside the coefficients' nodes.
     """
     return np.stack(
         [
@@ -156,7 +156,7 @@ def limb_darkening(star: Star, wavelengths: Array) -> Array:
 
 
 def check_range(where: str, nodes: tuple[float, ...], wavelengths: Array) -> None:
-    """Raise PresetError unless the wavelengths lie within the nodes, both in nm."""
+    """Raise PresetError unless the wavelengths are within the nodes, both in nm."""
     outside = wavelengths[(wavelengths < nodes[0]) | ~(wavelengths <= nodes[-1])]
     if outside.size:
         raise PresetError(

@@ -1,4 +1,4 @@
-"""A pipeline that stays hot between requests, as of frames, previews or a page of knobs."""
+"""A pipeline that stays hot between requests, such as frames, previews or changed settings."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ class Pipeline:
     Parameters
     ----------
     workers : Workers, optional
-        Who does the work.
+        Threads that do the work.
     keep : int, optional
         Suns and altitudes whose light stays in memory, 6 to 70 MB each.
 
     Notes
     -----
-    Several threads may ask at once; what two of them need is computed once.
+    Several threads may use it at once; what two of them need is computed once.
     """
 
     def __init__(self, *, workers: Workers = ALL_CPUS, keep: int = KEPT) -> None:
@@ -105,7 +105,7 @@ class Pipeline:
         progress: Progress | None = None,
         cancel: Event | None = None,
     ) -> CodeValues:
-        """Make a picture for a screen, so wide: of a map of the whole sphere an equirect one.
+        """Make a display-referred picture; of a map of the whole sphere an equirect one.
 
         Parameters
         ----------
@@ -129,7 +129,7 @@ class Pipeline:
 
 
 def _prepare(scene: Scene, progress: Progress | None) -> None:
-    """Go through the stages before the pixels, which would else be gone through by them."""
+    """Compute the stages before the pixels, to report each on its own."""
     for name, stage in (
         ("atmosphere", lambda: scene.sky.atmosphere),
         ("sky", lambda: scene.table),

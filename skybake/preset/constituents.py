@@ -179,7 +179,7 @@ def _checked_profile(
     section: Section, altitude: tuple[float, ...], density: tuple[float, ...], top: Top | None
 ) -> TabulatedProfile:
     if len(altitude) != len(density) or len(altitude) < 2:
-        section.fail("profile", "altitude_km and density must be equally many, at least 2")
+        section.fail("profile", "altitude_km and density must have the same length, at least 2")
     if any(a >= b for a, b in pairwise(altitude)):
         section.fail("profile", "altitudes must ascend")
     if min(density) < 0.0 or max(density) == 0.0:

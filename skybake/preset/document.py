@@ -13,10 +13,10 @@ Key = tuple[str, ...]
 """Names of the tables down to a key, and its own."""
 
 NONE = "none"
-"""The value that takes away what an earlier source gave."""
+"""The value that removes what an earlier source gave."""
 
 MAX_DEPTH = 8
-"""Of tables in tables; no key of a preset lies deeper."""
+"""Nesting of tables; no key of a preset is deeper."""
 
 _WHOLE = {"composition"}
 _RIVALS = {
@@ -32,7 +32,7 @@ class Source:
     Attributes
     ----------
     name : str
-        How messages call it: a file, or an option of the command line.
+        Its name in messages: a file, or an option of the command line.
     folder : Path
         What paths to the user's tables are relative to.
     is_file : bool
@@ -45,7 +45,7 @@ class Source:
 
 
 def dotted(key: Key) -> str:
-    """Key as people write it."""
+    """Key as users write it."""
     return ".".join(key)
 
 
@@ -55,15 +55,15 @@ class Document:
     Attributes
     ----------
     data : dict
-        What the preset says in the end.
+        The merged content of the preset.
     changes : dict
         The values that were set one by one, by their dotted keys.
 
     Notes
     -----
     A later source wins. Tables are merged key by key, but a table of another ``kind``
-    and a gas's composition replace the former one whole. The value "none" takes a key
-    away, and of two keys that exclude each other the later one takes away the former.
+    and a gas's composition replace the former one completely. The value "none" removes a
+    key, and of two keys that exclude each other the later one removes the former.
     """
 
     def __init__(self) -> None:
@@ -72,12 +72,12 @@ class Document:
         self._sources: dict[Key, Source] = {}
 
     def lay(self, table: dict[str, Any], source: Source) -> None:
-        """Lay a whole file over what is there.
+        """Merge a whole file into the tables.
 
         Raises
         ------
         PresetError
-            If it takes away what is not there, or its tables lie too deep.
+            If it removes what is not there, or its tables are nested too deep.
         """
         if not self.data:
             self._mark((), table, source)
@@ -135,7 +135,7 @@ class Document:
                 if name not in into:
                     known = ", ".join(into)
                     raise PresetError(
-                        f"{source.name}: {dotted(key)}: 'none' must take away one of {known}"
+                        f"{source.name}: {dotted(key)}: 'none' must remove one of {known}"
                     )
                 self._remove(into, key)
             elif isinstance(value, dict) and isinstance(old, dict) and _merges(name, old, value):
@@ -168,7 +168,7 @@ class Document:
     def _check_depth(key: Key, source: Source) -> None:
         if len(key) > MAX_DEPTH:
             raise PresetError(
-                f"{source.name}: {dotted(key[:2])}: tables must lie at most {MAX_DEPTH} deep"
+                f"{source.name}: {dotted(key[:2])}: tables must be nested at most {MAX_DEPTH} deep"
             )
 
 

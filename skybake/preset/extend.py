@@ -1,4 +1,4 @@
-"""Presets that extend others, and values that are laid over them."""
+"""Presets that extend others, and values that override them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ TOP_KEYS = (
     "ground",
     "constituents",
 )
-"""What a preset may say at its top, apart from what it extends."""
+"""Top-level keys of a preset, apart from `extends`."""
 
 NAME = re.compile(r"[A-Za-z0-9_-]+")
 """Names of constituents, which fit into dotted keys."""
@@ -83,7 +83,7 @@ def load_document(name_or_path: str | Path, overrides: Overrides = ()) -> Docume
 
 
 def planet_name(name_or_path: str | Path) -> str | None:
-    """Return the planet whose air a preset describes, as ``mars``, if it extends one of ours.
+    """Return the planet of a preset, such as ``mars``, if it extends one that comes with skybake.
 
     Raises
     ------
@@ -114,7 +114,7 @@ def _chain(path: Path) -> list[tuple[Path, dict[str, Any]]]:
         visited = [known for known, _ in chain]
         if path.resolve() in [known.resolve() for known in visited]:
             names = " -> ".join(display_name(one) for one in [*visited, path])
-            raise PresetError(f"{where}: must not lead back to a preset before it, got {names}")
+            raise PresetError(f"{where}: must not form a cycle, got {names}")
 
 
 def _base(path: Path, where: str, base: Any) -> Path:
@@ -159,7 +159,7 @@ def _full_key(document: Document, override: Override) -> Key:
 
 
 def _leads_somewhere(key: Key, names: Iterable[str]) -> bool:
-    """Whether a key's table is there; below that its reader knows better."""
+    """Whether a key's table is there; its reader checks what is in it."""
     if key[0] != "constituents" or len(key) <= 2:
         return key[0] in TOP_KEYS
     return key[1] in names or key[2:] == ("kind",)

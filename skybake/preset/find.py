@@ -49,7 +49,7 @@ def find_preset(name_or_path: str | Path) -> Path:
     if name_or_path not in names:
         raise PresetError(
             f"unknown preset {shown(name_or_path)}; known presets: {', '.join(names)}; "
-            "a file of your own needs the ending .toml"
+            "your own file must end in .toml"
         )
     return _folder() / f"{name_or_path}.toml"
 
@@ -65,7 +65,7 @@ def display_name(path: Path) -> str:
 
 
 def read_preset(path: Path, where: str) -> str:
-    """Read the text of a preset; a fault is a PresetError of one line that starts with `where`."""
+    """Read the text of a preset; raises a PresetError of one line that starts with `where`."""
     try:
         return input_files.read_text(path, where, input_files.LARGEST_PRESET)
     except InputError as error:

@@ -20,7 +20,7 @@ MAX_CONSTITUENTS = 16
 """More than any known sky needs, few enough for kernels to hold in registers and cache."""
 
 MAX_WAVELENGTHS = 128
-"""Tables of the air take room and time for each."""
+"""Memory and time of an atmosphere's tables grow with each of them."""
 
 VISIBLE = (380.0, 720.0)
 """What spectra must cover, unless the preset chooses its wavelengths. [nm]"""
@@ -50,7 +50,7 @@ def load_preset(name_or_path: str | Path, overrides: Overrides = ()) -> Planet:
     Raises
     ------
     PresetError
-        With the file, the key and the rule that it breaks; its `faults` are all there are.
+        With the file, the key and the rule that it breaks; its `faults` are all errors.
 
     Warns
     -----
@@ -76,7 +76,7 @@ def planet_from_document(document: Document, *, name: str) -> Planet:
     Raises
     ------
     PresetError
-        With all faults.
+        With all errors.
     """
     top = Section(document)
     read = Gather(top)
@@ -172,7 +172,7 @@ def _read_constituents(top: Section, highest: Top | None) -> tuple[Constituent, 
         section.fail("", f"must be 1 to {MAX_CONSTITUENTS}, got {len(names)}")
     for name in names:
         if not NAME.fullmatch(name):
-            section.fail("", f"names must be of letters, digits, _ and -, got {shown(name)}")
+            section.fail("", f"names must consist of letters, digits, _ and -, got {shown(name)}")
     read = Gather()
     constituents = tuple(read(_read_one, section, name, highest) for name in names)
     read.finish()

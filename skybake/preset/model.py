@@ -229,14 +229,14 @@ class Star:
 
 @dataclass(frozen=True, slots=True)
 class Planet:
-    """A world: all that a sky depends on but the observer and the time.
+    """A world: everything that a sky depends on except the observer and the time.
 
     Attributes
     ----------
     name : str
         The preset's name, or its file's without the ending.
     title : str
-        One line for people.
+        Human-readable, one line.
     radius, atmosphere_top : float
         Of the ground; altitude above which there is vacuum. [km]
     rendering : {"spectral", "rgb"}
@@ -251,7 +251,7 @@ class Planet:
         enough to make the planet again, given the user's own tables, whose SHA-256
         is under ``"files"``. What was set is repeated under ``"set"``.
     data_quality : str or None
-        Where the data are weak, for people; None if nothing needs to be said.
+        Human-readable: where the data are weak; None if they are not.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""What a preset says in the end, as data that make the same planet again."""
+"""The merged content of a preset, as data that make the same planet again."""
 
 from __future__ import annotations
 

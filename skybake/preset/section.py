@@ -1,4 +1,4 @@
-"""A table of a preset, read key by key with every fault named by its place."""
+"""A table of a preset, read key by key; every error names its place."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Result = TypeVar("Result")
 
 
 class Section:
-    """One table of a preset and the keys that were asked of it.
+    """One table of a preset and the keys that were read from it.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ class Section:
             )
 
     def finish(self) -> None:
-        """Refuse keys that nobody asked for."""
+        """Refuse unknown keys."""
         known = sorted(set(self._asked))
         faults = []
         for key in self._data:
@@ -197,12 +197,12 @@ class Section:
 
 
 class Gather:
-    """Calls readers one after another and keeps their faults, so that all are told at once.
+    """Calls readers one after another and collects their errors, so that all are reported.
 
     Parameters
     ----------
     *sections : Section
-        Tables that are read, whose unknown keys are faults too.
+        Tables that are read, whose unknown keys are errors too.
     """
 
     def __init__(self, *sections: Section) -> None:
@@ -215,7 +215,7 @@ class Gather:
         *args: Parameters.args,
         **kwargs: Parameters.kwargs,
     ) -> Result:
-        """Return what the reader returns; what a faulty one leaves is never used."""
+        """Return what the reader returns; the result of one that fails is never used."""
         try:
             return read(*args, **kwargs)
         except PresetError as error:
@@ -223,7 +223,7 @@ class Gather:
             return cast(Result, None)
 
     def finish(self) -> None:
-        """Raise all faults as one error."""
+        """Raise all errors as one."""
         for section in self._sections:
             self(section.finish)
         if self._faults:

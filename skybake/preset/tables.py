@@ -30,10 +30,10 @@ def load_table(name: str, where: str, source: Source, column: str) -> dict[str, 
     where : str
         Where the preset names it, for messages.
     source : Source
-        What the user's paths are relative to; out of a file's folder leads only an
-        absolute path, so that a preset from elsewhere stays within what came with it.
+        What the user's paths are relative to; only an absolute path leads out of a file's
+        folder, so that a preset from elsewhere stays within the files that came with it.
     column : str
-        A column that it needs, to tell which tables of skybake would do.
+        A column that it needs, so that messages can name suitable tables.
 
     Returns
     -------
@@ -48,14 +48,14 @@ def load_table(name: str, where: str, source: Source, column: str) -> dict[str, 
     if is_user_file(name):
         where = f"{where}: {shown(name)}"
         if source.is_file and Path(os.path.normpath(name)).parts[0] == os.pardir:
-            raise PresetError(f"{where}: must lie in the preset's folder or be an absolute path")
+            raise PresetError(f"{where}: must be in the preset's folder or an absolute path")
         return _parse(where, _read(source.folder / name, where))
     if name not in {path.stem for path in _DATA.glob("*.csv")}:
         columns = table_columns()
         known = ", ".join(one for one in columns if column in columns[one])
         raise PresetError(
             f"{where}: unknown table {shown(name)}; tables with a column {column}: "
-            f"{known or 'none'}; a file of your own needs the ending .csv"
+            f"{known or 'none'}; your own file must end in .csv"
         )
     return _parse(where, _read(_DATA / f"{name}.csv", where))
 

@@ -19,8 +19,8 @@ _LONGEST = 80
 def resolved_text(name_or_path: str | Path, overrides: Overrides = ()) -> str:
     """Return a preset with what it extends and what is set, as TOML.
 
-    Each key that was not written in the preset itself has its origin as a remark. Loaded
-    from the preset's own folder it makes the same planet.
+    Each key that was not written in the preset itself names its origin in a comment.
+    Loaded from the preset's own folder the text makes the same planet.
 
     Raises
     ------
@@ -57,23 +57,23 @@ def preset_template(name: str, base: str) -> str:
         If the name does not fit or the base is faulty.
     """
     if not NAME.fullmatch(name):
-        raise PresetError(f"name: must be of letters, digits, _ and -, got {shown(name)}")
+        raise PresetError(f"name: must consist of letters, digits, _ and -, got {shown(name)}")
     load_preset(base)
     file = str(Path(base).resolve()) if is_path(base) else base
     data = load_document(base).data
     body = {key: value for key, value in data.items() if key not in ("title", "data_quality")}
     return f"""\
-# A world of your own. It says only what differs from what it extends: take the # from a line
-# and change its value. The value "none" takes a key away. To take away a whole constituent, delete
-# its table here, head and all, and write above the first table: constituents.NAME = "none"
-# Check it by: skybake presets check {name}.toml
+# A world of your own. It contains only what differs from what it extends: remove the # from a line
+# and change its value. The value "none" removes a key. To remove a whole constituent, delete its
+# table here, including the header, and write above the first table: constituents.NAME = "none"
+# Check it with: skybake presets check {name}.toml
 extends = {toml_value(file)}
 title = {toml_value(f"{name}, after {base}")}
 
-{toml_text(body, _remark)}
+{toml_text(body, _comment)}
 # constituents.NAME = {{ ... }} adds one, see docs/presets.md.
 """
 
 
-def _remark(_: Key, line: str) -> str:
+def _comment(_: Key, line: str) -> str:
     return f"# {line}" if len(line) <= _LONGEST else f"# {line[:_LONGEST]} ..."

@@ -71,7 +71,7 @@ def toml_value(value: Any) -> str:
     if isinstance(value, dict):
         inner = ", ".join(f"{_name(name)} = {toml_value(one)}" for name, one in value.items())
         return f"{{ {inner} }}" if inner else "{}"
-    raise TypeError(f"no value of TOML: {value!r}")
+    raise TypeError(f"not a TOML value: {value!r}")
 
 
 def _name(name: str) -> str:

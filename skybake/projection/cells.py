@@ -22,7 +22,7 @@ class Cells(NamedTuple):
     Attributes
     ----------
     zenith, azimuth : ndarray of float64, shape (cell,)
-        Where they lie. [rad]
+        Where they are. [rad]
     distance, solid_angle : ndarray of float64, shape (cell,)
         Angles from the disc's centre [rad], and sizes [sr] of what the disc covers of them.
     texel : ndarray of int, shape (cell, 4)

@@ -73,7 +73,7 @@ class Chart(ABC):
 
 @dataclass(frozen=True)
 class Part:
-    """Where a chart lies in a picture.
+    """Place of a chart in a picture.
 
     Attributes
     ----------
@@ -82,7 +82,7 @@ class Part:
     row, column : int
         Of its first pixel in the picture.
     flip : {None, "rows", "columns"}
-        Whether it stands upside down, or is mirrored left to right.
+        Whether it is upside down, or mirrored left to right.
     """
 
     chart: Chart
@@ -127,7 +127,7 @@ class Projection(ABC):
     Attributes
     ----------
     name : str
-        By which users ask for it.
+        By which users select it.
     lights_a_dome : bool
         Whether a dome light of USD takes its maps everywhere.
     """
@@ -160,21 +160,21 @@ class Projection(ABC):
     @property
     @abstractmethod
     def label(self) -> str:
-        """What the names of files call it."""
+        """How file names denote it."""
 
     @abstractmethod
     def recipe(self) -> dict[str, Any]:
-        """All that decides where pixels look, in units for people, fit for JSON."""
+        """All that decides where pixels look, in human-readable units, fit for JSON."""
 
     @abstractmethod
     def smaller(self, width: int) -> Projection:
-        """Return the same view in a single picture at most so wide, or as wide as suits it."""
+        """Return the same view in a single picture of at most this width, or one that suits it."""
 
     @abstractmethod
     def glance(self, width: int) -> Projection:
-        """Return a single picture, so wide, by which the light is judged and recognised.
+        """Return a single picture of this width, for thumbnails and automatic exposure.
 
-        It is the whole sphere as an equirect map where the map holds it, else what is seen.
+        It is an equirect map of the whole sphere if the map covers it, else the same view.
         """
 
     def check_file(self, path: Path) -> None:

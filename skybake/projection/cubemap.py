@@ -6,7 +6,7 @@ with row 0 at v = -1::
     px (1,-v,-u)  nx (-1,-v,u)  py (u,1,v)  ny (u,-1,-v)  pz (u,-v,1)  nz (-u,-v,-1)
 
 That is what OpenGL, Vulkan and D3D sample with a world direction, and what
-cmgen writes. Texel centres lie at (i + 1/2) / edge.
+cmgen writes. Texel centres are at (i + 1/2) / edge.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ class FaceChart(GnomonicChart):
         self._axes = _FRAMES[face]
 
     def angles(self, first: int, last: int) -> tuple[Array, Array]:
-        """Directions of the texels; bearings of one row where the face stands upright."""
+        """Directions of the texels; bearings of one row where the face is upright."""
         u = ((2.0 * np.arange(self.width) + 1.0) / self.width - 1.0)[None]
         v = u[0, first:last, None]
         x, y, z = (
@@ -125,7 +125,7 @@ class Cubemap(Projection):
 
     @property
     def label(self) -> str:
-        """What the names of files call it."""
+        """How file names denote it."""
         return self.name if self.layout == LAYOUTS[0] else f"{self.name}_{self.layout}"
 
     def recipe(self) -> dict[str, Any]:

@@ -1,7 +1,7 @@
 """Equirectangular maps in OpenEXR's and USD's orientation.
 
 Row 0 looks up. Columns run clockwise as seen from above, from north at the
-left edge over east, south in the middle, and west. Texel centres lie at
+left edge over east, south in the middle, and west. Texel centres are at
 (i + 1/2) / width.
 """
 
@@ -74,7 +74,7 @@ class EquirectChart(Chart):
 
         Notes
         -----
-        A cell's flux goes to the two nearest rows and columns. Rows share it in
+        A cell's flux is shared by the two nearest rows and columns. Rows share it in
         proportion to the sine of the latitude, so that a map keeps both the flux and
         its vertical component (the illuminance of the ground) at any size, and a sun
         that moves through a sequence does not flicker from texel to texel.
@@ -155,7 +155,7 @@ class Equirect(Projection):
 
     @property
     def label(self) -> str:
-        """What the names of files call it."""
+        """How file names denote it."""
         return self.name
 
     def recipe(self) -> dict[str, Any]:
@@ -163,7 +163,7 @@ class Equirect(Projection):
         return {"projection": self.name, "width": self.width, "cube_layout": None}
 
     def smaller(self, width: int) -> Projection:
-        """Return a map at most so wide."""
+        """Return a map of at most this width."""
         return Equirect(min(self.width, width))
 
     def glance(self, width: int) -> Projection:

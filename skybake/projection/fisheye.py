@@ -77,7 +77,7 @@ class FisheyeChart(Chart):
         return outside
 
     def disc_cells(self, zenith: float, bearing: float, radius: float) -> Cells:
-        """Cut a disc into cells, each of which adds to the one pixel that it lies in."""
+        """Cut a disc into cells, each of which adds to the one pixel that it is in."""
         centre, edge, step = (
             direction_from_angles(bearing, math.pi / 2.0 - zenith),
             self.width,
@@ -183,7 +183,7 @@ class Fisheye(Projection):
 
     @property
     def label(self) -> str:
-        """What the names of files call it."""
+        """How file names denote it."""
         label = f"{self.name}_fov{math.degrees(self.fov):g}deg"
         if (self.azimuth, self.elevation) == (math.pi, math.pi / 2.0):
             return label
@@ -200,9 +200,9 @@ class Fisheye(Projection):
         }
 
     def smaller(self, width: int) -> Projection:
-        """Return a picture at most so wide."""
+        """Return the same picture, at most of this width."""
         return self.glance(min(self.edge, width))
 
     def glance(self, width: int) -> Projection:
-        """Return the same picture, so wide."""
+        """Return the same picture of another width."""
         return Fisheye(width, self.fov, self.azimuth, self.elevation)

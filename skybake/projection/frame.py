@@ -45,7 +45,7 @@ def look_frame(azimuth: float, elevation: float) -> Frame:
 
 
 def check_look(azimuth: float, elevation: float) -> None:
-    """Refuse what is no direction.
+    """Refuse an invalid direction.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def check_look(azimuth: float, elevation: float) -> None:
 
 
 def look_label(azimuth: float, elevation: float) -> str:
-    """Return what the names of files call a direction."""
+    """Return how file names denote a direction."""
     bearing = round(math.degrees(azimuth), 2) % 360.0
     return f"az{bearing:g}deg_el{math.degrees(elevation):g}deg"
 

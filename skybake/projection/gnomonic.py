@@ -64,7 +64,7 @@ class GnomonicChart(Chart):
         return self._solid_angles(np.arange(first, last)[:, None], np.arange(self.width))
 
     def disc_cells(self, zenith: float, bearing: float, radius: float) -> Cells:
-        """Cut a disc into cells, each of which adds to the one pixel that it lies in."""
+        """Cut a disc into cells, each of which adds to the one pixel that it is in."""
         frame, width, height = self.frame, self.width, self.height
         centre = direction_from_angles(bearing, math.pi / 2.0 - zenith)
         # Cells that the edge cuts may have their centres outside it.

@@ -1,4 +1,4 @@
-"""Pictures as a camera without distortion takes them."""
+"""Pictures of a camera without distortion."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class Perspective(Projection):
 
     @property
     def label(self) -> str:
-        """What the names of files call it."""
+        """How file names denote it."""
         look = look_label(self.azimuth, self.elevation)
         return f"{self.name}_{look}_fov{math.degrees(self.fov):g}deg"
 
@@ -84,11 +84,11 @@ class Perspective(Projection):
         }
 
     def smaller(self, width: int) -> Projection:
-        """Return the same picture, which is looked at in its own size up to full HD."""
+        """Return the same picture, in its own size up to full HD."""
         largest = max(width, LARGEST_PREVIEW)
         return self if self.width <= largest else self.glance(largest)
 
     def glance(self, width: int) -> Projection:
-        """Return the same picture, so wide."""
+        """Return the same picture of another width."""
         height = max(1, round(self.height * width / self.width))
         return Perspective(width, height, self.fov, self.azimuth, self.elevation)

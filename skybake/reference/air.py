@@ -67,7 +67,7 @@ def air_at(medium: Medium, wavelength: int) -> Air:
 def _lobes(phase: Array) -> tuple[Array, Array]:
     """Histogram of each phase function over scattering angle, and its running sum.
 
-    A histogram is enough, since every sample is weighted by what it stands for
+    A histogram is enough, since every sample is weighted by what it represents
     divided by the probability that it was in fact drawn with.
     """
     # 1 - cos(theta) = 2 sin²(theta/2) keeps its digits near 0, where cos does not.

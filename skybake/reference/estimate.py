@@ -1,4 +1,4 @@
-"""What the path tracer is asked: radiances, their first order, irradiances."""
+"""What the path tracer computes: radiances, their first order, irradiances."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def radiance(
     promises there, and are lit by the sun through exact transmittances; its
     directions are drawn around the last one, around the sun, or by the light
     field, and weighted by the balance heuristic (Veach 1997, eq. 9.8). In deep
-    twilight and in thick air under a narrow phase function the error's distribution
+    twilight and in a thick atmosphere with a narrow phase function the error's distribution
     has a long tail: believe a standard error only after it halved with four
     times the samples.
     """

@@ -61,7 +61,7 @@ class Guide(NamedTuple):
 def make_guide(air: Air) -> Guide:
     """Light field of isotropic scattering, by a few orders, steps and rays."""
     nodes = (ALTITUDES, SUNS)
-    # Every place is lit a little, or no path would go where the model is dark.
+    # Every place is lit a little, or no path would lead where the model is dark.
     ambient, cells = np.full(nodes, 1e-12), np.empty((*nodes, CELLS))
     guide = Guide(np.empty(nodes), ambient, cells, float(air.altitude[-1]))
     _fill_guide(air, guide, np.empty(nodes), np.empty(CELLS))
@@ -86,7 +86,7 @@ def _fill_guide(air, guide, next_ambient, radiance):
 
 @kernel
 def _add_diffusion(air, guide):
-    """Light that seeps through thick air, which few orders leave dark, as 1 / optical depth."""
+    """Light that diffuses through a thick atmosphere, as 1 / depth; few orders leave it dark."""
     k_last = len(air.altitude) - 1
     for i in range(ALTITUDES):
         h = _altitude(i, guide.top)
@@ -96,7 +96,7 @@ def _add_diffusion(air, guide):
             depth += 0.5 * (air.extinction[k] + air.extinction[k + 1]) * max(0.0, thickness)
         for j in range(SUNS):
             mu_s = max(0.0, _square(j, SUNS - 1))
-            # The excess over depth 1 alone, so that thin air keeps what was gathered.
+            # Only the excess over depth 1, so that a thin atmosphere keeps what was gathered.
             guide.ambient[i, j] += mu_s * max(0.0, depth - 1.0) / (1.0 + depth) ** 2
 
 

@@ -36,19 +36,19 @@ class Cuts(NamedTuple):
 
 
 class Ray(NamedTuple):
-    """A ray in the air.
+    """A ray in the atmosphere.
 
     Attributes
     ----------
     cuts : Cuts
         Valid from 0 to `segments`.
     segments : int
-        0 if the ray misses the air.
+        0 if the ray misses the atmosphere.
     h_tangent : float
         Altitude of the nearest point to the centre, on the ray's line. [km]
     start : float
         Distance from the nearest point at which the ray starts; before the
-        first cut if that is outside the air. [km]
+        first cut if that is outside the atmosphere. [km]
     reaches_ground : bool
     """
 
@@ -61,7 +61,7 @@ class Ray(NamedTuple):
 
 @kernel
 def tangent_altitude(r_bottom, h, mu):
-    """Altitude of the ray's nearest point to the centre; it may lie underground."""
+    """Altitude of the ray's nearest point to the centre; it may be below the ground."""
     return h - (r_bottom + h) * mu * mu / (1.0 + math.sqrt(max(0.0, 1.0 - mu * mu)))
 
 

@@ -102,7 +102,7 @@ def _integrate(medium, rays, steps, sun_steps, first, last, scratch, light, sing
         low = begin
         for i in range(steps):
             high = _edge(begin, lowest, end, (i + 1) / steps)
-            # What lies before the shadow, in it and behind it.
+            # What is before the shadow, in it and behind it.
             for part in range(3):
                 start = low if part == 0 else max(low, dark_first if part == 1 else dark_last)
                 stop = high if part == 2 else min(high, dark_first if part == 0 else dark_last)

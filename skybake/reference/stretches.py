@@ -1,4 +1,4 @@
-"""Stretches of a ray: where on it a path's next vertex lies."""
+"""Stretches of a ray: where on it a path has its next vertex."""
 
 from __future__ import annotations
 

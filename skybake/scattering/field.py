@@ -61,7 +61,7 @@ class DiffuseField(NamedTuple):
 
 
 def altitude_layers(medium: Medium, altitude: Array) -> Array:
-    """Where the altitudes of `altitude_nodes` lie between a field's nodes.
+    """Where the altitudes of `altitude_nodes` are between a field's nodes.
 
     Light varies along with altitude where a layer between two nodes is thin and
     along with optical depth where it is thick; the share of the upper node is the

@@ -21,7 +21,7 @@ ALTITUDES = 30
 THIN_DEPTH = 2.0
 ALTITUDES_PER_DEPTH = 4.0
 MAX_ALTITUDES = 96
-"""Nodes of altitude, more of them in a thick atmosphere: light between two nodes that lie an
+"""Nodes of altitude, more of them in a thick atmosphere: light between two nodes that are an
 optical depth apart is lost to interpolation, 6 % of it at depth 10 with no more than 24."""
 
 LAST_JUDGED = math.radians(110.0)
@@ -33,7 +33,7 @@ UPWARD = 12
 DOWNWARD = 6
 
 # Spacing of the sun's zenith angles: fine where the planet's shadow passes through
-# the atmosphere, and not too wide at the zenith, near which moments go as sin(angle)**m.
+# the atmosphere, and not too wide at the zenith, near which moments vary as sin(angle)**m.
 _SPACING_AT = (0.0, 50.0, 75.0, 86.0, 90.0, 104.0, 112.0, 125.0, 180.0)
 _SPACING = (10.0, 8.0, 5.0, 1.6, 0.8, 0.8, 1.0, 4.0, 10.0)
 
@@ -90,7 +90,7 @@ def thickest_depth(medium: Medium) -> float:
 
 
 def azimuths(order: int) -> Array:
-    """Midpoints of half the circle that tell cosines up to an order apart. [rad]"""
+    """Midpoints of half the circle that resolve cosines up to an order. [rad]"""
     return math.pi * (np.arange(order + 1) + 0.5) / (order + 1)
 
 
@@ -139,7 +139,7 @@ def empty_field(
 
 
 def no_field(scaled: ScaledMedium) -> DiffuseField:
-    """Field that stands for no diffuse light: rays leave out a field on one altitude."""
+    """Field of no diffuse light: rays leave out a field on one altitude."""
     return empty_field(scaled, np.zeros(1), sun_angles(math.pi), 0)
 
 

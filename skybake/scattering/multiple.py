@@ -30,7 +30,7 @@ class Scratch(NamedTuple):
     Attributes
     ----------
     node, weights, cosine : ndarray, shape (ray,), (ray, 4) and (ray,)
-        Where between nodes the sun stands for each ray of a fan, and in which azimuth.
+        Where the sun is between nodes for each ray of a fan, and in which azimuth.
     fourier : ndarray of float32, shape (sun, order m * wavelength)
         Sums over degrees l at the nodes of the sun's angle.
     series : ndarray of float32, shape (order m * wavelength,)
@@ -127,7 +127,7 @@ def add_diffuse(field, radiance, medium, negligible_share, fans, begin, end, sam
                 for k in range(wavelengths):
                     negligible[k] += density * field.source[c, 0, k] * samples.weight[n, k]
         # The field is smooth within a step, so that its two samples share a lookup where
-        # the middle of what they scatter lies.
+        # the middle of what they scatter is.
         for n in range(first, last, 2):
             _fill_scattering(field, samples, n, weight, scattering)
             degrees = _count_degrees(scattering, negligible)
@@ -199,7 +199,7 @@ def _count_degrees(scattering, negligible):
 
 @kernel
 def _fill_suns(field, rays, first, count, t, radius, mu_here, node, weights, cosine):
-    """Find where the sun stands at a sample, for each ray; returns the nodes first and last."""
+    """Find the sun between nodes at a sample, for each ray; returns the nodes first and last."""
     least, most = field.sun_angle.size, 0
     for q in range(count):
         r, mu_s, nu = rays[first + q, 0], rays[first + q, 2], rays[first + q, 3]

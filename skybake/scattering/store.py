@@ -1,4 +1,4 @@
-"""Tables on disk, as plain arrays under a name that says what they depend on.
+"""Tables on disk, as plain arrays under a name derived from what they depend on.
 
 A file holds arrays only: what they are, and their numbers.
 """
@@ -26,7 +26,7 @@ LARGEST_STORE = 1 << 30
 def read_tables(key: str) -> dict[str, Any] | None:
     """Return the arrays of a file, or None if it is missing or not as it was written."""
     folder = _folder()
-    # The time of last use decides what goes first when the folder is full.
+    # The time of last use decides what is removed first when the folder is full.
     stored = None if folder is None else folder.read(_file(key), mark_used=True)
     return None if stored is None else arrays_from_content(key, stored)
 

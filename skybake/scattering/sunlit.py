@@ -99,7 +99,7 @@ def gather_sunlit(medium, columns, ray, samples, first, last, length, out):
         start = samples.distance[n] - GAUSS_LOW * step
         stop = start + step
         for part in range(2):
-            # What lies before the shadow, then what lies behind it.
+            # What is before the shadow, then what is behind it.
             begin = start if part == 0 else max(start, dark_last)
             end = min(stop, dark_first) if part == 0 else stop
             if end <= begin:

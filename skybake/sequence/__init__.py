@@ -1,1 +1,1 @@
-"""Many maps of one world: which frames, where they go, and what is written about them."""
+"""Many maps of one world: which frames, their files, and what is written about them."""

@@ -55,7 +55,7 @@ def check_animation(path: Path, fps: float) -> None:
     kind = _KINDS.get(path.suffix.lower())
     if kind is None:
         raise InputError(
-            f"{path}: suffix of a moving picture must be one of {', '.join(_KINDS)}, "
+            f"{path}: suffix of an animated picture must be one of {', '.join(_KINDS)}, "
             f"got {path.suffix!r}"
         )
     if not _SLOWEST <= fps <= kind.fastest:
@@ -63,18 +63,18 @@ def check_animation(path: Path, fps: float) -> None:
             f"{path}: frames per second must be from {_SLOWEST:g} to {kind.fastest:g}, got {fps:g}"
         )
     if find_spec("PIL") is None:
-        raise InputError(f"{path}: needs Pillow, as from pip install 'skybake[animate]'")
+        raise InputError(f"{path}: needs Pillow; try pip install 'skybake[animate]'")
     check_target(path)
 
 
 def write_animation(path: Path, thumbnails: Sequence[Picture], fps: float) -> None:
-    """Write a moving picture that starts again at its end.
+    """Write an animated picture that loops.
 
     Parameters
     ----------
     path : Path
         ``.webp``, or ``.gif`` with one palette for all frames and a dither that
-        stands still.
+        stays fixed.
     thumbnails : sequence of ndarray of uint8, shape (row, column, 3)
         At least one, code values of sRGB, all of one shape.
     fps : float
@@ -119,7 +119,7 @@ def _film(thumbnails: Sequence[Picture]) -> Image:
             self.seek(0)
 
         def seek(self, frame: int) -> None:
-            """Go to a frame."""
+            """Select a frame."""
             still = Image.fromarray(thumbnails[frame])
             self.im, self._mode, self._size = still.im, still.mode, still.size
             self._frame = frame
@@ -132,7 +132,7 @@ def _film(thumbnails: Sequence[Picture]) -> Image:
 
 
 def _durations(count: int, fps: float, tick: int) -> list[int]:
-    """How long each frame stands, such that rounding does not add up. [ms]"""
+    """Duration of each frame, such that rounding errors do not accumulate. [ms]"""
     ends = [tick * round(1000.0 * frame / fps / tick) for frame in range(count + 1)]
     return [after - before for before, after in pairwise(ends)]
 
@@ -147,11 +147,11 @@ def _common_palette(thumbnails: Sequence[Picture]) -> Image:
 
 
 def _dithered(thumbnail: Picture, palette: Image) -> Image:
-    """Take a palette's colours by an ordered dither, so that no pixel hangs on its neighbours.
+    """Map to a palette by an ordered dither, so that no pixel depends on its neighbours.
 
     Diffusing errors would change the grain of the whole picture with each frame. For
     every pixel, as many colours are found as the pattern has ranks, whose mean is
-    closest to it, and the pattern tells which of them, from dark to light, is taken
+    closest to it, and the pattern selects which of them, from dark to light, is taken
     (Knoll, US patent 6606166, expired).
     """
     from PIL import Image

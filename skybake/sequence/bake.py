@@ -47,7 +47,7 @@ def bake_sequence(
         Exposure value of all pictures at ISO 100; auto suits the frame with the highest
         sun, or the maps' own exposure where a curve sets it; adapt finds one for each.
     skip_existing : bool, optional
-        Leave frames alone whose files are whole and of the same recipe.
+        Skip frames whose files are complete and of the same recipe.
     retries : int, optional
         How often a frame that failed is tried again, after all others.
     workers : int, optional
@@ -57,12 +57,12 @@ def bake_sequence(
     tell : callable, optional
         Called with each `FrameEvent`.
     notice : callable, optional
-        Called with a line for people where something takes long that later runs save.
+        Called with a human-readable line when something takes long that later runs need not repeat.
 
     Returns
     -------
     SequenceResult
-        What became of the frames; one that failed does not stop the others.
+        Which frames were baked, skipped or failed; one that fails does not stop the others.
 
     Raises
     ------

@@ -46,13 +46,13 @@ def dask_pool(
     Parameters
     ----------
     plan : Plan
-        The sequence. Its files must lie in folders that the workers share.
+        The sequence. Its files must be in folders that the workers share.
     previews : PreviewSettings
         How its frames are shown.
     address : str
         Of the scheduler, as ``tcp://host:8786``.
     skip_existing : bool, optional
-        Leave frames alone whose files are whole and of the same recipe.
+        Skip frames whose files are complete and of the same recipe.
 
     Raises
     ------
@@ -62,15 +62,15 @@ def dask_pool(
 
     Notes
     -----
-    The world and the tables of its air, 14 MB, are sent to each worker once; a frame is
-    half a kilobyte each way beside its thumbnails. A frame whose worker dies goes to
-    another one.
+    The world and the tables of its atmosphere, 14 MB, are sent to each worker once; a
+    frame is half a kilobyte each way besides its thumbnails. If a worker dies, its frame
+    is given to another.
     """
     try:
         from dask.distributed import Client, as_completed
     except ImportError as error:
-        raise InputError("dask: needs distributed, as from pip install 'skybake[dask]'") from error
-    # Its words would stand between ours; what is lost becomes a frame's failure.
+        raise InputError("dask: needs distributed; try pip install 'skybake[dask]'") from error
+    # Its messages would mix with ours; what is lost becomes a frame's failure.
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
     try:
         client = Client(address, timeout=CONNECT_WITHIN, set_as_default=False)
@@ -127,7 +127,7 @@ def _pipeline() -> Pipeline:
 
 
 def versions() -> dict[str, str]:
-    """Return what a worker's pixels depend on beside the frame."""
+    """Return what a worker's pixels depend on besides the frame."""
     major, minor, _ = platform.python_version_tuple()
     ours = {"skybake": __version__, "python": f"{major}.{minor}", "processor": processor()}
     return ours | {name: version(name) for name in _PACKAGES}
@@ -160,7 +160,7 @@ def _check_workers(client: Any, address: str) -> None:
 
 
 def _tables(plan: Plan) -> Tables:
-    """Tables that all frames share; where each has its own air, its worker builds them."""
+    """Tables that all frames share; where each has its own atmosphere, its worker builds them."""
     if len(plan.planets) > 1:
         return None
     lighting = plan.frames[0].settings.lighting
@@ -180,7 +180,7 @@ def _outcome(future: Any) -> FrameOutcome | Exception:
     if future.status == "error":
         error: Exception = future.exception()
         return error
-    return InputError(f"dask: a frame has not come back ({future.status})")
+    return InputError(f"dask: a frame was lost ({future.status})")
 
 
 def _one_line(error: BaseException) -> str:

@@ -1,7 +1,7 @@
-"""What is known of the files of a frame: their digests, and what they were to hold.
+"""What is known of the files of a frame: their digests, and what they should hold.
 
-They lie in a hidden folder beside the maps, a file for each frame in the format of
-``sha256sum``. A file of which nothing is known counts as one that is not there.
+They are stored in a hidden folder beside the maps, a file for each frame in the format of
+``sha256sum``. A file without a digest counts as missing.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _LONGEST_NAME = 255
 
 
 def claim_of(recipe_hash: str, attributes: Mapping[str, Any]) -> str:
-    """Digest of all that a frame's files are to say.
+    """Digest of everything that a frame's files shall state.
 
     Parameters
     ----------

@@ -30,7 +30,7 @@ class ExposureCurve:
     Raises
     ------
     InputError
-        If the points are none of these.
+        If the points are invalid.
     """
 
     points: tuple[tuple[float, float], ...]

@@ -97,9 +97,9 @@ def finish_frame(
     previews : PreviewSettings
         What to show.
     pipeline : Pipeline
-        What keeps that of one frame which serves the next.
+        Keeps what one frame shares with the next.
     skip_existing : bool, optional
-        Leave the frame alone if its files are whole and of the same recipe.
+        Skip the frame if its files are complete and of the same recipe.
 
     Raises
     ------

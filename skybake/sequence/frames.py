@@ -95,7 +95,7 @@ def _runs(frames: list[int]) -> Iterator[list[int]]:
             end < len(frames) and frames[end] - frames[end - 1] == frames[end - 1] - frames[end - 2]
         ):
             end += 1
-        # Two frames that lie apart say nothing of a step; the second may begin a run.
+        # Two frames that are apart do not define a step; the second may begin a run.
         if end == first + 2 and end <= len(frames) and frames[first + 1] - frames[first] > 1:
             end = first + 1
         yield frames[first:end]
@@ -129,7 +129,7 @@ class FramePattern:
     Attributes
     ----------
     folder : Path
-        Where the files lie.
+        Where the files are.
     before, after : str
         The file's name around the number; ``{face}`` stays as it is.
     digits : int or None
@@ -157,7 +157,7 @@ class FramePattern:
         ------
         InputError
             If there are several places for the number, one in a folder's name, or
-            what looks like one and is none.
+            what only looks like one.
         """
         path = Path(text)
         if not path.name:

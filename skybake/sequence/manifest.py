@@ -15,7 +15,7 @@ from skybake.sequence.frames import format_frames
 from skybake.version import __version__
 
 SCHEMA = 1
-"""Goes up when a key of the JSON changes its meaning or goes."""
+"""Incremented when a key of the JSON changes its meaning or is removed."""
 
 _AXES = {"sun_direction": "xyz", "sun_colour": "rgb"}
 
@@ -31,7 +31,7 @@ class FrameRecord:
     time : str or None
         ISO 8601 in UTC; None if the frame has a sun but no time.
     label : str or None
-        The same for people, in local time.
+        The same, human-readable and in local time.
     sun_elevation_deg, sun_azimuth_deg : float
         Geometric elevation of the sun's centre, and its compass bearing. [deg]
     altitude_m : float
@@ -120,9 +120,9 @@ def write_manifest(path: Path, header: SequenceHeader, records: Iterable[FrameRe
     Parameters
     ----------
     path : Path
-        By custom ``*.sequence.json``.
+        By convention ``*.sequence.json``.
     header : SequenceHeader
-        Its keys stand on top, after ``schema`` and ``frames``.
+        Its keys are at the top level, after ``schema`` and ``frames``.
     records : iterable of FrameRecord
         In any order; in the file they ascend, under ``records``.
 
@@ -146,7 +146,7 @@ def write_csv(path: Path, records: Iterable[FrameRecord]) -> None:
     """Write the records as CSV: a row for each frame, an empty cell for None.
 
     Vectors take three columns, ``sun_direction_x`` and so on; the six files of a cube
-    stand in one cell with ``;`` between.
+    share one cell, separated by ``;``.
 
     Raises
     ------

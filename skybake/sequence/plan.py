@@ -34,7 +34,7 @@ class Frame:
     preview : Path or None
         The display-referred picture.
     label : str or None
-        Its time for people.
+        Human-readable time.
     attributes : mapping of str to Attribute
         Of time and place, for its files.
     """
@@ -81,12 +81,12 @@ class Plan:
     def only(self, numbers: Sequence[int]) -> Plan:
         """Return the plan with some of its frames.
 
-        Numbers between the plan's frames are let pass: some farms name ranges without steps.
+        Numbers between the plan's frames are ignored: some farms name ranges without steps.
 
         Raises
         ------
         ArgumentError
-            If there is none of them, or one lies before or beyond all frames.
+            If there is none of them, or one is before or beyond all frames.
         """
         wanted = set(numbers)
         frames = tuple(one for one in self.frames if one.number in wanted)
@@ -130,7 +130,7 @@ class Plan:
         return max(self.frames, key=lambda frame: frame.settings.lighting.sun_elevation)
 
     def summary(self) -> list[dict[str, Any]]:
-        """Return the frames in units for people, fit for JSON."""
+        """Return the frames in human-readable units, fit for JSON."""
         return [
             {
                 "frame": frame.number,

@@ -36,7 +36,7 @@ def plan_sequence(
 ) -> Plan:
     """Return all frames of a sequence; nothing is computed yet.
 
-    A `Ramp` goes evenly from the first frame to the last.
+    A `Ramp` changes evenly from the first frame to the last.
 
     Parameters
     ----------
@@ -46,10 +46,10 @@ def plan_sequence(
         Frame numbers, as ``"1-96"``; needed unless `times` say how many there are, which
         are then counted from 1.
     times : TimeSpan or sequence of Moment, optional
-        Put the sun where it stands then; moments are one for each frame. A span without
+        Put the sun where it is then; moments are one for each frame. A span without
         a step is spread over the frame numbers, so left out ones leave a gap in time.
     sun_elevation, sun_azimuth : float or Ramp, optional
-        Where the sun stands, if not by `times`; default as in `settings`. [rad]
+        Where the sun is, if not by `times`; default as in `settings`. [rad]
     altitude : float or Ramp, optional
         Of the observer above the ground, at least 0; default as in `settings`. [km]
     changes : PresetChanges or mapping, optional
@@ -118,11 +118,11 @@ def _numbers_and_moments(
     numbers = None if frames is None else _numbers(frames)
     if times is None:
         if numbers is None:
-            raise ArgumentError("{frames}: is needed, as 1-96")
+            raise ArgumentError("{frames}: is required, such as 1-96")
         return numbers, ()
     if isinstance(times, TimeSpan) and times.every is None:
         if numbers is None:
-            raise ArgumentError("{frames}: is needed, or {every}")
+            raise ArgumentError("{frames}: is required, or {every}")
         first, last = numbers[0], numbers[-1]
         moments = times.moments(last - first + 1)
         return numbers, [moments[number - first] for number in numbers]
@@ -170,7 +170,7 @@ def _planets(
 
 
 def _plain(number: float) -> float:
-    """Return a number as one would type it, since the text of a recipe tells 2 from 2.0."""
+    """Return a number as one would type it, since 2 and 2.0 make different recipes."""
     return int(number) if number.is_integer() else number
 
 

@@ -1,4 +1,4 @@
-"""Frames on the threads of this process, which share the tables of the air."""
+"""Frames on the threads of this process, which share the tables of the atmosphere."""
 
 from __future__ import annotations
 
@@ -39,11 +39,11 @@ def local_pool(
         Frames at once; default one for each CPU. A single one uses all CPUs, which
         is slower but takes the memory of one frame.
     skip_existing : bool, optional
-        Leave frames alone whose files are whole and of the same recipe.
+        Skip frames whose files are complete and of the same recipe.
 
     Notes
     -----
-    Threads: kernels, compression and files hold no lock of the interpreter.
+    Threads suffice: kernels, compression and file access release the interpreter's lock.
     """
     workers = min(workers or cpu_count(), max(len(plan.frames), 1))
     stop = threading.Event()
@@ -68,7 +68,7 @@ def local_pool(
             error = future.exception()
             if error is not None and not isinstance(error, Exception):
                 raise error
-            # Let go of it, since it holds the thumbnails of its frame.
+            # Release it, since it holds the thumbnails of its frame.
             yield pending.pop(future), error or future.result()
 
     try:

@@ -1,4 +1,4 @@
-"""What a sequence leaves beside its maps: manifests, a contact sheet, a moving picture."""
+"""Files about a sequence, beside its maps: manifests, contact sheet, animated picture."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Products:
     animation : Path or None
         A moving picture, ``.webp`` or ``.gif``.
     fps : float
-        Frames per second of the moving picture and of USD.
+        Frames per second of the animated picture and of USD.
     command : tuple of str
         A command that bakes the same frames, for the manifest.
     """

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Ramp:
-    """A value that goes evenly from the first frame to the last.
+    """A value that changes evenly from the first frame to the last.
 
     Attributes
     ----------
     first, last : float
-        Equal if it stands still.
+        Equal if it is constant.
     """
 
     first: float

@@ -112,7 +112,7 @@ def prepare(plan: Plan, notice: Callable[[str], None] | None = None) -> None:
     plan : Plan
         The sequence.
     notice : callable, optional
-        Called with a line for people where something takes long that later runs save.
+        Called with a human-readable line when something takes long that later runs need not repeat.
     """
     missing = [sky for sky in _skies(plan) if not sky.is_solved]
     if not missing:

@@ -1,10 +1,10 @@
-"""What may stand in a line of text that another program reads."""
+"""Characters that a line of text for another program may contain."""
 
 from __future__ import annotations
 
 import re
 
-# Control characters, and the halves of pairs that stand for bytes that are no UTF-8.
+# Control characters, and the surrogates that encode bytes that are not UTF-8.
 _UNFIT = re.compile("[\x00-\x1f\x7f-\x9f\ud800-\udfff]")
 
 

@@ -22,12 +22,12 @@ Picture = npt.NDArray[np.uint8]
 
 
 class Thumbnails:
-    """Pictures of frames in a nameless file, which goes with the process.
+    """Pictures of frames in an unnamed file, which is removed with the process.
 
     Parameters
     ----------
     folder : Path
-        Where the file lies: that of the pictures that are made of them.
+        Folder of the file: that of the pictures that are made of them.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -73,7 +73,7 @@ class Thumbnails:
 
 
 def _open(owner: Thumbnails, folder: Path) -> IO[bytes]:
-    """Return a nameless file in a folder, which is closed when its owner goes."""
+    """Return an unnamed file in a folder, which is closed when its owner is deleted."""
     file = TemporaryFile(dir=folder, buffering=0)  # noqa: SIM115 - its owner keeps it open
     weakref.finalize(owner, file.close)
     return file

@@ -1,9 +1,9 @@
-"""A sequence as lights of USD: a dome that wears the maps, and the sun as a distant light.
+"""A sequence as lights of USD: a dome with the maps as texture, and the sun as a distant light.
 
 Both share one unit, the maps' white: the dome's texel of 1 and the sun's intensity
-of 1 stand for `FrameRecord.white_luminance_cd_m2`, in cd/m2 and in lux. USD's rule
-for lat-long textures is OpenEXR's (UsdLuxDomeLight's documentation), which our maps
-keep to, so that the dome stands as it is.
+of 1 stand for `FrameRecord.white_luminance_cd_m2`, in cd/m2 and in lux. USD orients
+lat-long textures as OpenEXR does (UsdLuxDomeLight's documentation), and so do our maps,
+so that the dome needs no rotation.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def check_usd(path: Path, projection: str, files: Iterable[str] = ()) -> None:
     ------
     InputError
         If the suffix is not ``.usda``, if the maps are not equirect, which is the only
-        kind that a dome light wears everywhere, or if the name of one has a character
+        kind that every dome light supports, or if the name of one has a character
         that USD cannot hold.
     OutputError
         If a file cannot be written under that name.
@@ -185,7 +185,7 @@ def _triple(x: float, y: float, z: float) -> str:
 
 
 def _asset(path: Path, file: str) -> str:
-    """Write a path so that USD looks for it beside the layer only."""
+    """Write a path so that USD searches for it beside the layer only."""
     if not is_plain_line(file) or "@@@" in file:
         raise InputError(f"{path}: USD must be able to hold a file's name, got {file!r}")
     anchored = file if Path(file).is_absolute() else f"./{file}"

@@ -24,7 +24,7 @@ def _cubic(x, size, out):
 
 @kernel
 def _keep_inside(i, size, out):
-    """Let a parabola stand for the node beyond either end; returns the first node, in 0..size-4."""
+    """Extrapolate a node beyond either end by a parabola; returns the first node, in 0..size-4."""
     if i < 0:
         ghost = out[0]
         out[0], out[1], out[2] = out[1] + 3.0 * ghost, out[2] - 3.0 * ghost, out[3] + ghost

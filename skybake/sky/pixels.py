@@ -16,7 +16,7 @@ from skybake.sky.table import FoldedTable
 
 @kernel
 def _fill_places(folded, middle, cosine, out):
-    """Write where in the curves of the basis pixels lie: scattering angles as floating indices."""
+    """Write pixels' places in the curves of the basis: scattering angles as floating indices."""
     half = np.float32(0.5 * (folded.curves.shape[0] - 1))
     along_squared = math.sin(0.5 * (middle - folded.source_zenith)) ** 2
     sines = math.sin(middle) * math.sin(folded.source_zenith)
@@ -32,7 +32,7 @@ def _fill_places(folded, middle, cosine, out):
 def _add_pixels(folded, latitude, first, weights, share, place, out):
     """Add `share` of the radiance of pixels to `out`, shape (pixel, 3).
 
-    A pixel lies among the rows of `latitude` from its own `first` on, by its four `weights`.
+    A pixel is among the rows of `latitude` from its own `first` on, by its four `weights`.
     """
     last = folded.curves.shape[0] - 2
     scale = np.float32(share)
@@ -63,9 +63,9 @@ class PixelScratch(NamedTuple):
     by_curve : ndarray of float32, shape (side, azimuth + 2, 3, curve)
         The same numbers.
     row, weights : ndarray, shape (side, column) and (side, column, 4)
-        Where between azimuths of the table pixels lie.
+        Where pixels are between azimuths of the table.
     angle, cosine, place : ndarray, shape (column,)
-        Angles from the sun's azimuth, and where in the curves of the basis pixels lie.
+        Angles from the sun's azimuth, and places of pixels in the curves of the basis.
     theta, share, has_weights : ndarray, shape (side,)
         How a row of pixels is split, and whether it can keep weights for the next.
     four : ndarray of float64, shape (4,)

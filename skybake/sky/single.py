@@ -33,7 +33,7 @@ class SingleSkylight(Skylight):
         return build_phase_basis(self.phase, [[c] for c in range(len(self.phase))])
 
     def segments(self, directions: Array, distances: Array) -> Segments:
-        """Refuse: only tables tell the light up to a distance.
+        """Refuse: the light up to a distance needs the tables of all orders.
 
         Raises
         ------
@@ -41,7 +41,7 @@ class SingleSkylight(Skylight):
             Always.
         """
         del directions, distances
-        raise InputError("segments: must be asked of all orders of scattering, got the first alone")
+        raise InputError("segments: method must not be march, which has single scattering alone")
 
     def _light(self, source: Source, mu: Array, nu: Array) -> RayLight:
         rays = self._rays(source, mu, nu)

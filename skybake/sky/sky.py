@@ -1,4 +1,4 @@
-"""A planet's sky: what a preset, a place and a sun come to."""
+"""A planet's sky: a preset, an observer and a sun together."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Sky:
         All orders of scattering, Hillaire's closure, or single scattering alone, by direct
         quadrature: a check.
     workers : Workers, optional
-        Who does the work.
+        Threads that do the work.
 
     Raises
     ------
@@ -133,7 +133,7 @@ class Sky:
 
     @property
     def is_solved(self) -> bool:
-        """Whether the tables of this atmosphere lie on disk."""
+        """Whether the tables of this atmosphere are stored on disk."""
         return is_stored(self.medium, self.table_method)
 
     @property

@@ -47,7 +47,7 @@ class Skylight:
     sources : sequence of Source
         What lights it; the light of several adds up.
     workers : Workers, optional
-        Who does the work.
+        Threads that do the work.
 
     Attributes
     ----------
@@ -137,7 +137,7 @@ class Skylight:
         Raises
         ------
         InputError
-            If a direction or a distance is none.
+            If a direction or a distance is invalid.
         """
         unit = unit_directions(directions)
         medium = self.atmosphere.medium
@@ -158,7 +158,7 @@ class Skylight:
         return Segments(radiance.reshape(shape), transmittance.reshape(shape))
 
     def spectral_table(self, source: Source) -> SpectralTable:
-        """Trace the rays by which pixels know the light of one source."""
+        """Trace the rays from which pixels get the light of one source."""
         medium = self.atmosphere.medium
         geometry = table_geometry(self.radius, medium.r_bottom, medium.r_top, source.zenith)
         return SpectralTable(

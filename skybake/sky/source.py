@@ -12,7 +12,7 @@ from skybake.optics.medium import Array
 
 
 class Occluder(Protocol):
-    """What stands between the atmosphere and a source, such as a moon before the sun."""
+    """What covers a part of a source, such as a moon in front of the sun."""
 
     def visible_share(self, azimuth: Array, zenith: Array) -> Array:
         """Share of the light from points of the source that passes by.

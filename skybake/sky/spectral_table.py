@@ -73,7 +73,7 @@ class SpectralTable:
     Attributes
     ----------
     geometry : TableGeometry
-        Where its nodes lie.
+        Where its nodes are.
     light : RayLight
         Along a ray from the observer through each node, in the order of `geometry.mu`, per
         unit irradiance.

@@ -79,7 +79,7 @@ def horizon_angles(r: float, r_bottom: float, r_top: float) -> tuple[float, floa
 
 
 def ray_azimuths(sun_elevation: float, zenith_horizon: float) -> int:
-    """How many azimuths of rays tell those of a table inside the atmosphere."""
+    """How many azimuths of rays determine those of a table inside the atmosphere."""
     dip = zenith_horizon - math.pi / 2.0
     if sun_elevation > TWILIGHT_ELEVATION + dip:
         return RAY_AZIMUTHS

@@ -44,7 +44,7 @@ def radius_at(r, mu, t):
 
 @kernel
 def shadow_interval(r, mu, mu_s, nu, r_bottom, t_first, t_last):
-    """Part of a ray that lies in the planet's shadow.
+    """Part of a ray that is in the planet's shadow.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def shadow_interval(r, mu, mu_s, nu, r_bottom, t_first, t_last):
     -----
     The shadow is the half of the cylinder |x|² - (x·s)² < r_bottom² that lies
     behind the planet, x·s < 0. A ray outside the planet crosses the cylinder's
-    surface on one side only, so the sign of x·s anywhere inside tells which.
+    surface on one side only, so the sign of x·s anywhere inside decides which.
     """
     a = 1.0 - nu * nu
     half_b = r * (mu - mu_s * nu)

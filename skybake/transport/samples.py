@@ -31,7 +31,7 @@ class Samples(NamedTuple):
     column_to : ndarray of float64, shape (sample, constituent)
         Columns from the observer. [km]
     weight : ndarray of float64, shape (sample, wavelength)
-        Transmittance to the observer times the length that the sample stands
+        Transmittance to the observer times the length that the sample represents
         for; a sum of weight * source is the integral along the ray. [km]
     first, number : ndarray of int64, shape (ray,)
         First sample of each ray of the batch and how many there are: two for each step.

@@ -105,7 +105,7 @@ def trace_spans(medium, shells, max_arc, rays, distances, begin, end, samples):
     -----
     What `samples` holds of rays it holds here of spans between distances, the spans of a
     ray one after another: their own samples, and transmittance and columns from the ray's
-    start to the span's end. The span that goes on beyond the ground is the one that hits it.
+    start to the span's end. The span that continues beyond the ground is the one that hits it.
     """
     capacity, number = samples.distance.size, distances.shape[1]
     used = np.int64(0)
@@ -207,7 +207,7 @@ def _layer_at(shells, h, descending):
 def _next_shell(shells, layer, descending, r_bottom, t_closest, closest_squared):
     """Distance of the next shell that the ray crosses, and the layer behind it."""
     if descending and layer == 0:
-        # Only the ground lies below, and there the ray ends by itself.
+        # Only the ground is below, and there the ray ends by itself.
         return (math.inf if closest_squared < r_bottom * r_bottom else t_closest), 0
     if descending:
         r_shell = r_bottom + shells[layer]
@@ -225,7 +225,7 @@ def _next_shell(shells, layer, descending, r_bottom, t_closest, closest_squared)
 @kernel
 def _limit_depth(medium, r, mu, t, t_next, transmittance, scratch):
     """Shorten a step until no wavelength that still counts gains more than one depth."""
-    # The density at the middle of a long step tells little of its start, hence the rounds.
+    # The density at the middle of a long step says little about its start, hence the rounds.
     for _ in range(8):
         h = radius_at(r, mu, 0.5 * (t + t_next)) - medium.r_bottom
         fill_density(medium.density, medium.r_bottom, medium.r_top, h, scratch)

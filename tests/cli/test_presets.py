@@ -185,7 +185,7 @@ def test_a_key_of_a_new_world_is_changed_by_taking_its_hash_away(tmp_path, monke
     assert load_preset("own.toml").recipe["constituents"]["aerosol"]["optical_depth"] == 0.4
 
 
-def test_a_constituent_of_a_new_world_is_taken_away_as_its_remarks_say(tmp_path, monkeypatch):
+def test_a_constituent_of_a_new_world_is_taken_away_as_its_comments_say(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     invoke("presets", "new", "own")
     head, *tables = Path("own.toml").read_text("utf-8").split("\n[")
@@ -211,7 +211,7 @@ def test_a_new_world_may_extend_a_file_and_is_moved_without_losing_it(tmp_path, 
     [
         (("own",), "own.toml: exists already"),
         (("own.toml",), "own.toml: exists already"),
-        (("a/b",), "name: must be of letters, digits, _ and -, got 'a/b'"),
+        (("a/b",), "name: must consist of letters, digits, _ and -, got 'a/b'"),
         (("x" * 300,), "File name too long"),
         (("a", "--from", "erth"), "unknown preset 'erth'; known presets: earth, "),
         (("a", "--from", "own.toml"), "own.toml: not valid TOML"),
@@ -250,7 +250,7 @@ main()
 def test_without_matplotlib_drawing_is_refused_in_one_line(tmp_path):
     status, output, errors = run("presets", "plot", "mars", code=WITHOUT, cwd=tmp_path)
     assert (status, output) == (1, "")
-    assert errors == "skybake: plot: needs matplotlib, as from pip install 'skybake[plot]'\n"
+    assert errors == "skybake: plot: needs matplotlib; try pip install 'skybake[plot]'\n"
     assert listing(tmp_path) == []
 
 

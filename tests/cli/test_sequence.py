@@ -15,7 +15,7 @@ from tests.cli.test_faults import check_fault, table
 pytestmark = pytest.mark.usefixtures("folder")
 
 USAGE = """
---sun 30                               => --frames: is needed, as 1-96
+--sun 30                               => --frames: is required, such as 1-96
 --frames 1-3 --sun 10..95              => '--sun': must be from -90deg to 90deg, got 95
 --frames 1-3 --sun 10..                => '--sun': must be an angle such as 5deg
 --frames 1-3 --sun 10..20..30          => '--sun': must be an angle such as 5deg
@@ -37,7 +37,7 @@ USAGE = """
 --frames 1-3 --from 2026-06-21T04:00Z  => --from: needs --to as well
 P --frames 1-3 D --sun 30              => --sun: cannot be combined with --from and --to
 P --frames 1-3 D --sun-azimuth 30      => --sun-azimuth: cannot be combined with --from and --to
-P D                                    => --frames: is needed, or --every
+P D                                    => --frames: is required, or --every
 P D --every 0min                       => '--every': must be greater than 0s, got 0min
 P D --every soon                       => '--every': must be a duration such as 10min
 P D --every 1h --frames 1-3            => --frames: must be as many as --every makes, which is 6, g

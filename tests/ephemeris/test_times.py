@@ -100,7 +100,7 @@ def test_a_mistyped_event_tells_the_nearest():
 
 def test_a_time_in_the_gap_of_spring_is_refused():
     assert message(parse_time, "2026-03-29T02:30", zone=PARISIAN) == (
-        "is never shown in Europe/Paris, where clocks go from 02:00 to 03:00, "
+        "does not exist in Europe/Paris, where clocks change from 02:00 to 03:00, "
         "got '2026-03-29T02:30:00'"
     )
     assert utc_text(parse_time("2026-03-29T03:00", zone=PARISIAN)) == "2026-03-29T01:00:00Z"
@@ -108,16 +108,16 @@ def test_a_time_in_the_gap_of_spring_is_refused():
 
 def test_a_time_that_autumn_shows_twice_is_refused_with_both_offsets():
     assert message(parse_time, "2026-10-25T02:30", zone=PARISIAN) == (
-        "is shown twice in Europe/Paris, write 2026-10-25T02:30:00+02:00 or "
+        "is ambiguous in Europe/Paris, write 2026-10-25T02:30:00+02:00 or "
         "2026-10-25T02:30:00+01:00, got '2026-10-25T02:30:00'"
     )
     assert utc_text(parse_time("2026-10-25T02:30+02:00")) == "2026-10-25T00:30:00Z"
     assert utc_text(parse_time("2026-10-25T03:00", zone=PARISIAN)) == "2026-10-25T02:00:00Z"
 
 
-def test_a_gap_of_half_an_hour_is_told_as_it_is():
+def test_a_gap_of_half_an_hour_is_reported_as_it_is():
     text = message(parse_time, "2026-10-04T02:10", zone=ZoneInfo("Australia/Lord_Howe"))
-    assert "clocks go from 02:00 to 02:30" in text
+    assert "clocks change from 02:00 to 02:30" in text
 
 
 def test_an_event_is_that_of_the_local_date_with_its_offset():

@@ -106,7 +106,7 @@ def test_none_takes_away_a_constituent_or_a_key(tmp_path):
 
 def test_none_for_what_is_not_there_is_refused_with_what_is(tmp_path):
     path = write(tmp_path, "own", 'extends = "earth"\nconstituents.smoke = "none"')
-    known = "'none' must take away one of air, ozone, aerosol"
+    known = "'none' must remove one of air, ozone, aerosol"
     assert fault(path) == f"{path}: constituents.smoke: {known}"
 
 
@@ -125,9 +125,9 @@ def test_a_preset_that_leads_back_to_itself_is_refused_with_the_chain(tmp_path):
         write(tmp_path, name, f'extends = "{base}.toml"')
     a, b, c = (tmp_path / f"{name}.toml" for name in "abc")
     chain = f"got {a} -> {b} -> {c} -> {b}"
-    assert fault(a) == f"{c}: extends: must not lead back to a preset before it, {chain}"
+    assert fault(a) == f"{c}: extends: must not form a cycle, {chain}"
     own = write(tmp_path, "d", 'extends = "./d.toml"')
-    assert "must not lead back" in fault(own)
+    assert "must not form a cycle" in fault(own)
 
 
 @pytest.mark.parametrize(
@@ -201,7 +201,7 @@ def test_tables_elsewhere_are_read_by_their_absolute_path_only(tmp_path):
     text = 'extends = "earth"\nground.albedo = "{}"'
     assert load_preset(write(tmp_path, "in/own", text.format(sand))).ground.albedo.values[0] == 0.2
     path = write(tmp_path, "in/own", text.format("../sand.csv"))
-    assert "must lie in the preset's folder or be an absolute path" in fault(path)
+    assert "must be in the preset's folder or an absolute path" in fault(path)
 
 
 def test_overrides_are_laid_by_dotted_keys_with_or_without_the_prefix_of_constituents():
@@ -251,7 +251,7 @@ def test_a_constituent_can_be_set_whole():
         ),
         ("planet.radius", "planet: unknown key 'radius', nearest: radius_km; known keys: "),
         ("ground.albedo.x", "ground.albedo.wavelength_nm: must be given"),
-        ("ground." + "a." * 5000 + "a", "ground.a: tables must lie at most 8 deep"),
+        ("ground." + "a." * 5000 + "a", "ground.a: tables must be nested at most 8 deep"),
     ],
 )
 def test_an_unknown_key_of_an_override_is_refused_with_the_nearest(key, message):

@@ -106,7 +106,7 @@ def test_without_pillow_the_extra_is_named_in_one_line(tmp_path, monkeypatch):
     with pytest.raises(InputError) as fault:
         check_animation(tmp_path / "sky.gif", 24.0)
     assert str(fault.value) == (
-        f"{tmp_path}/sky.gif: needs Pillow, as from pip install 'skybake[animate]'"
+        f"{tmp_path}/sky.gif: needs Pillow; try pip install 'skybake[animate]'"
     )
 
 
@@ -115,7 +115,7 @@ def test_a_picture_that_cannot_be_written_leaves_the_one_before(tmp_path):
     write_animation(path, [dusk(0.5)], 24.0)
     before = path.read_bytes()
     too_wide = np.zeros((4, 20000, 3), np.uint8)
-    with pytest.raises(OutputError, match=r"sky\.webp: must be written whole, got"):
+    with pytest.raises(OutputError, match=r"sky\.webp: cannot be written completely: "):
         write_animation(path, [too_wide, too_wide], 24.0)
     assert path.read_bytes() == before
     assert [one.name for one in tmp_path.iterdir()] == ["sky.webp"]

@@ -93,9 +93,9 @@ def test_a_faulty_exposure_curve_is_refused(points, message):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({}, "frames: is needed, as 1-96"),
+        ({}, "frames: is required, such as 1-96"),
         ({"frames": []}, "frames: must hold at least one frame"),
-        ({"times": MORNING}, "frames: is needed, or every"),
+        ({"times": MORNING}, "frames: is required, or every"),
         ({"times": []}, "times: must hold at least one moment"),
         ({"times": HOURLY, "frames": "1-4"}, "frames: must be as many as every makes, which is 3"),
         ({"times": [sun_at("2026-06-21T04:00Z", PARIS)], "frames": "1-2"}, "frames: must be as"),

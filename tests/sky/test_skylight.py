@@ -114,7 +114,7 @@ def test_segments_end_at_the_radiance_of_the_whole_ray():
 
 
 def test_segments_of_the_first_order_alone_are_refused():
-    with pytest.raises(InputError, match="segments: must be asked of all orders"):
+    with pytest.raises(InputError, match="segments: method must not be march"):
         truth_skylight("EARTH_A", 20.0, 0.0, "march").segments(DIRECTIONS, [1.0])
 
 

@@ -45,20 +45,21 @@ emit_options = options_together(
     click.option(
         "--emit-commands",
         is_flag=True,
-        help="Print a command for each chunk of frames, for a farm or GNU parallel, and bake none.",
+        help="Print a command for each chunk of frames, for a farm or GNU parallel, and bake "
+        "nothing.",
     ),
     click.option(
         "--emit-openjd",
         metavar="FOLDER",
         type=values.folder,
-        help="Write an Open Job Description with a task for each chunk, and bake none.",
+        help="Write an Open Job Description with a task for each chunk, and bake nothing.",
     ),
     click.option(
         "--chunk-size",
         metavar="N",
         type=click.IntRange(min=1),
         show_default=str(_CHUNK),
-        help="Frames of a chunk.",
+        help="Frames in a chunk.",
     ),
 )
 

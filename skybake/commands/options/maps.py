@@ -86,7 +86,7 @@ map_options = options_together(
         show_default="zip",
         help="Of an EXR: none, rle, zips, zip[:1-9], piz, pxr24, b44, b44a, dwaa[:0-135], ...",
     ),
-    click.option("--clamp-negative", is_flag=True, help="Set negative values, out of gamut, to 0."),
+    click.option("--clamp-negative", is_flag=True, help="Set negative values (out of gamut) to 0."),
     click.option(
         "--sun-disc",
         type=click.Choice(values.SUN_DISCS),
@@ -99,14 +99,14 @@ map_options = options_together(
         type=click.Choice(values.METHODS),
         default="full",
         show_default=True,
-        help="Light transport: all orders of scattering, Hillaire's closure, or as a check single "
-        "scattering by direct quadrature.",
+        help="Light transport: all orders of scattering, Hillaire's closure, or, as a check, "
+        "single scattering by direct quadrature.",
     ),
 )
 
 
 def map_needs(options: Mapping[str, Any]) -> Needs:
-    """Return what `map_options` need to have an effect, beside ``--output``.
+    """Return what `map_options` need to have an effect, besides ``--output``.
 
     Raises
     ------

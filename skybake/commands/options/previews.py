@@ -12,7 +12,7 @@ from skybake.commands.options import values
 from skybake.commands.options.rules import Decorator, Needs, options_together
 
 BESIDE = Path("beside-the-map.png")
-"""Stands for the default name of a preview."""
+"""Selects the default name of a preview."""
 
 _SEQUENCE_PICTURES = ("preview", "contact_sheet", "animate")
 

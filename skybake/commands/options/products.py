@@ -31,14 +31,14 @@ product_options = options_together(
         metavar="FILE.png",
         type=click.Path(path_type=Path),
         callback=values.with_suffix(".png"),
-        help="Write one picture with all frames side by side.",
+        help="Write a picture of all frames side by side.",
     ),
     click.option(
         "--animate",
         metavar="FILE.webp",
         type=click.Path(path_type=Path),
         callback=values.with_suffix(".webp", ".gif"),
-        help="Write a moving picture, .webp or .gif; needs pip install 'skybake[animate]'.",
+        help="Write an animated picture, .webp or .gif; needs pip install 'skybake[animate]'.",
     ),
     click.option(
         "--fps",
@@ -46,7 +46,7 @@ product_options = options_together(
         type=values.frame_rate,
         default="24",
         show_default=True,
-        help="Frames per second of the moving picture and of USD.",
+        help="Frames per second of the animated picture and of USD.",
     ),
 )
 

@@ -1,7 +1,7 @@
 """What holds for options of any subject: how they are added, and when they are refused.
 
-Options are named as the arguments of the functions that their values go to, so that a
-fault of an argument can be told as one of the option.
+Options are named like the arguments of the functions that take their values, so that an
+error in an argument can be reported as one in the option.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 Needs = Mapping[str, tuple[bool, str]]
-"""By the name of an option: whether it has an effect beside the others, and if not, why."""
+"""By the name of an option: whether it has an effect with the others, and if not, why."""
 
 
 def options_together(*options: Decorator) -> Callable[[Command], Command]:
@@ -41,7 +41,7 @@ def is_given(context: click.Context, name: str) -> bool:
 
 
 def check_needs(context: click.Context, *all_needs: Needs) -> None:
-    """Refuse options that would have no effect beside the others.
+    """Refuse options that would have no effect with the others.
 
     Raises
     ------
@@ -65,14 +65,14 @@ def option_names(context: click.Context) -> dict[str, str]:
 
 @contextmanager
 def usage_faults(context: click.Context, **others: str) -> Iterator[None]:
-    """Tell faults of arguments as wrong usage of the options of the same names.
+    """Report errors in arguments as wrong usage of the options of the same names.
 
     Parameters
     ----------
     context : click.Context
         With the options.
     **others : str
-        Options that stand for arguments of other names.
+        Options for arguments of other names.
     """
     try:
         yield

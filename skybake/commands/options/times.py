@@ -1,4 +1,4 @@
-"""The options that put the sun where it stands at a time, or at many."""
+"""The options that put the sun where it is at a time, or at many."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ moment_options = options_together(
     click.option(
         "--time",
         metavar="TIME",
-        help="Put the sun where it stands at --lat and --lon: 2026-06-21T04:00Z, or sunset+10min; "
+        help="Put the sun where it is at --lat and --lon: 2026-06-21T04:00Z, or sunset+10min; "
         "on Mars at --site, or 16:30 with --ls.",
     ),
     place_options,
@@ -30,7 +30,7 @@ span_options = options_together(
         "--from",
         "start",
         metavar="TIME",
-        help="Put the sun where it stands at --lat and --lon from here on: 2026-06-21T04:00Z, or "
+        help="Put the sun where it is at --lat and --lon from here on: 2026-06-21T04:00Z, or "
         "sunrise-1h; on Mars at --site, or 04:00 with --ls.",
     ),
     click.option("--to", "end", metavar="TIME", help="Time of the last frame."),
@@ -38,7 +38,7 @@ span_options = options_together(
         "--every",
         metavar="DURATION",
         type=values.duration,
-        help="Time between frames, as 10min; by default --frames are spread evenly.",
+        help="Time between frames, such as 10min; by default --frames are spread evenly.",
     ),
     place_options,
 )

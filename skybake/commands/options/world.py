@@ -26,7 +26,7 @@ def changes_from_options(context: click.Context) -> PresetChanges:
     Raises
     ------
     click.UsageError
-        If one would have no effect beside another.
+        If one would have no effect with another.
     """
     from skybake.optics.changes import PresetChanges
 

@@ -9,14 +9,14 @@ import click
 
 
 def announce(output: Path) -> None:
-    """Say what is baked, and on the first run why it takes longer."""
+    """Print what is baked, and on the first run why it takes longer."""
     announce_kernels()
     if not sys.stderr.isatty():
         notice(f"baking {output}")
 
 
 def announce_kernels() -> None:
-    """Say on the first run why it takes longer."""
+    """Print on the first run why it takes longer."""
     from skybake.jit.cache import is_warm
 
     if not is_warm():
@@ -24,5 +24,5 @@ def announce_kernels() -> None:
 
 
 def notice(line: str) -> None:
-    """Say what takes long."""
+    """Print what takes long."""
     click.echo(f"skybake: {line}", err=True)

@@ -1,4 +1,4 @@
-"""Progress while maps are baked, for people, for logs and for farms."""
+"""Progress while maps are baked: on terminals, in logs and for farms."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def map_progress(*, quiet: bool) -> Iterator[Callable[[float], None] | None]:
 
 
 class FrameProgress:
-    """Tells of frames as they are done.
+    """Reports frames as they are done.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class FrameProgress:
         self._baked = 0
 
     def __call__(self, event: FrameEvent) -> None:
-        """Tell of one frame."""
+        """Report one frame."""
         self._baked += event.kind == "baked"
         if self._style == "bar":
             self._bar.update(event.done - self._bar.pos, self._speed(event).partition(", ")[2])
@@ -76,7 +76,7 @@ class FrameProgress:
 
 @contextmanager
 def frame_progress(style: str, total: int, *, quiet: bool) -> Iterator[FrameProgress]:
-    """Yield what tells of frames; ``auto`` is a bar on a terminal and lines elsewhere."""
+    """Yield what reports frames; ``auto`` is a bar on a terminal and lines elsewhere."""
     if style == "auto":
         style = "none" if quiet else "bar" if sys.stderr.isatty() else "plain"
     if style != "bar":

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def print_summary(baked: Baked, seconds: float) -> None:
-    """Print files and illuminances for people."""
+    """Print files and illuminances, human-readable."""
     for path in baked.files:
         click.echo(path)
     if baked.preview is not None:

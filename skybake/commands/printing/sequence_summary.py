@@ -32,7 +32,7 @@ def print_plan(plan: Plan, *, as_json: bool) -> None:
 
 
 def print_summary(result: SequenceResult, written: Sequence[Path], seconds: float) -> None:
-    """Print the files about the sequence, and how many frames went how, for people."""
+    """Print the files about the sequence and the number of frames, human-readable."""
     for path in written:
         click.echo(path)
     baked, skipped = _counts(result)
@@ -44,7 +44,7 @@ def print_summary(result: SequenceResult, written: Sequence[Path], seconds: floa
 def print_json(result: SequenceResult, written: Sequence[Path], seconds: float) -> None:
     """Print one JSON object on one line, see docs/cli.md."""
     baked, skipped = _counts(result)
-    told = {
+    summary = {
         "baked": baked,
         "skipped": skipped,
         "failed": {str(number): message for number, message in result.failures.items()},
@@ -52,11 +52,11 @@ def print_json(result: SequenceResult, written: Sequence[Path], seconds: float) 
         "written": [str(path) for path in written],
         "seconds": round(seconds, 3),
     }
-    click.echo(json.dumps(told))
+    click.echo(json.dumps(summary))
 
 
 def print_failures(result: SequenceResult, *, openjd: bool) -> None:
-    """Say why frames failed, and which; to the Open Job Description too if it listens."""
+    """Say why frames failed, and which; also as an Open Job Description expects it."""
     from skybake.sequence.frames import format_frames
 
     for number, message in result.failures.items():
