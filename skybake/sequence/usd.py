@@ -26,13 +26,13 @@ _SUN_IS_IN_MAPS = (
 
 
 def check_usd(path: Path, projection: str, files: Iterable[str] = ()) -> None:
-    """Raise what can be said of a USD file before anything is computed.
+    """Raise the errors of a USD file that can be found before anything is computed.
 
     Parameters
     ----------
     path : Path
         ``.usda``.
-    projection : {"equirect", "cubemap"}
+    projection : str
         Of the maps.
     files : iterable of str, optional
         The maps, as seen from the USD file's folder.
