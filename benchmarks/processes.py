@@ -49,7 +49,7 @@ def medians(runs: list[dict[str, float]]) -> dict[str, float]:
 
 
 def machine() -> dict[str, object]:
-    """Tell what was measured on, and with what."""
+    """Return the machine and the versions that were measured."""
     packages = ("skybake", "numpy", "numba", "OpenImageIO")
     return {
         "date": datetime.now(UTC).date().isoformat(),

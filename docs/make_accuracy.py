@@ -66,7 +66,7 @@ def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
 
 
 def kilometres(altitude: float) -> str:
-    """Altitude for people."""
+    """Human-readable altitude."""
     return f"{altitude:g} km" if altitude >= 1.0 else f"{altitude * 1e3:g} m"
 
 

@@ -59,7 +59,7 @@ def cosine_between(
     Parameters
     ----------
     mu, sine : array_like
-        Cosine and sine of the zenith angle of one. Both are asked for since neither gives the
+        Cosine and sine of the zenith angle of one. Both are needed since neither gives the
         other to full precision everywhere.
     mu_s, sine_s : array_like
         The same of the other, such as the sun.

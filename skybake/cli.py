@@ -37,7 +37,7 @@ _NO_THREAD = "can't start new thread"
 
 
 class _EndedError(BaseException):
-    """The process was told to end, by the signal that is its argument."""
+    """A signal, the argument, asks the process to end."""
 
 
 class _CommandLine(click.Group):
@@ -94,7 +94,7 @@ class _CommandLine(click.Group):
                 # Code that knows the file names it; this is a full disk below standard output.
                 status = _fail(f"output: cannot be written ({error.strerror or error})", FAILED)
         if ends_by_signal:
-            # Only now is the exception gone, and with it what it kept from its clean-up.
+            # Only now is the exception released, and with it what it kept alive.
             _exit_now(status)
         sys.exit(status or 0)
 
@@ -119,7 +119,7 @@ def _signals_raised() -> Iterator[None]:
 
 
 def _raise_ended(number: int, _: FrameType | None) -> NoReturn:
-    # Many send a signal twice, which must not cut the clean-up short.
+    # Some programs send a signal twice, which must not interrupt the clean-up.
     signal.signal(number, signal.SIG_IGN)
     raise _EndedError(number)
 
@@ -150,7 +150,7 @@ def _leave(status: int) -> NoReturn:
 
 
 def _open_standard_streams() -> None:
-    """Let nothing take the place of closed standard streams, least of all a file to write."""
+    """Open closed standard streams, so that no file to write takes their place."""
     while True:
         descriptor = os.open(os.devnull, os.O_RDWR)
         if descriptor > _STANDARD_ERROR:
@@ -189,8 +189,8 @@ def main() -> None:
 def run() -> NoReturn:
     """Run the command line as a process of its own.
 
-    All files are closed by then, and taking modules apart one by one takes time: 0.2 s
-    where numba is among them.
+    All files are closed by then, and the interpreter's clean-up of modules takes time: 0.2 s
+    if numba is among them.
     """
     status: Any = 0
     _open_standard_streams()

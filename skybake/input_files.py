@@ -54,7 +54,7 @@ def read_bytes(path: Path, where: str, largest: int) -> bytes:
 
 
 def read_text(path: Path, where: str, largest: int) -> str:
-    """Read a file of UTF-8 text, of which a byte order mark is left out.
+    """Read a file of UTF-8 text, without its byte order mark.
 
     Parameters and errors are those of `read_bytes`; the file must be text as well.
     """

@@ -1,4 +1,4 @@
-"""From a preset and a view to files: the one place that joins all stages."""
+"""From a preset and settings to files: joins all stages."""
 
 from skybake.baking.paths import default_path
 from skybake.baking.write import Baked, bake

@@ -2,7 +2,7 @@
 
 Compiling keeps one CPU busy, and a first render spends most of its time on it. The
 kernels here are those that a render needs last. Arguments only have to be of the
-right types: no pixel and no ray is asked for.
+right types: no pixel and no ray is computed.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ KERNELS = (fill_each, add_diffuse, fill_sight_columns, fill_directions, fill_hal
 
 
 def compiled_in_background() -> AbstractContextManager[None]:
-    """Run this module beside a process that finds no kernels on disk, while it renders."""
+    """Run this module in the background of a process that finds no kernels, while it renders."""
     if is_warm():
         return nullcontext()
     return compile_in_background(__name__, frozenset(kernel.py_func.__name__ for kernel in KERNELS))
 
 
 def compile_kernels() -> None:
-    """Call each of `KERNELS` for nothing."""
+    """Call each of `KERNELS` without work."""
     seen = build_medium(load_preset("earth"), WAVELENGTHS)
     scaled = scale_medium(pad_wavelengths(seen), ORDER)
     field = empty_field(scaled, np.array([0.0, 1.0]), sun_angles(2.0), ORDER)

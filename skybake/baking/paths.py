@@ -24,7 +24,7 @@ _DISCS = {"include": "", "exclude": "nodisc", "only": "disc"}
 
 
 def default_path(planet: Planet, settings: MapSettings) -> Path:
-    """Name that says what a map is, as ``mars_sun+05.00deg_equirect.exr``.
+    """Name that describes a map, as ``mars_sun+05.00deg_equirect.exr``.
 
     What was changed of the preset follows its name, as
     ``mars_dust.optical_depth=2_sun+05.00deg_equirect.exr``, or, if that is long, six
@@ -48,7 +48,7 @@ def default_path(planet: Planet, settings: MapSettings) -> Path:
 
 
 def world_name(planet: Planet) -> str:
-    """Name of a planet, and what was set of its preset if there is anything."""
+    """Name of a planet, followed by what was set of its preset, if anything."""
     changes = planet.recipe.get("set")
     return f"{planet.name}_{_changes_name(changes)}" if changes else planet.name
 

@@ -20,20 +20,20 @@ from skybake.projection import cubemap, equirect
 Pixels = npt.NDArray[np.float32]
 
 SURVEY_ROWS = 256
-"""Rows of an equirect map that an exposure is chosen from; of larger ones texels are left out."""
+"""Rows of an equirect map that an exposure is chosen from; of larger ones texels are skipped."""
 
 SURVEY_EDGE = 128
 
 MAX_WIDTH = 1024
-"""Of pictures of maps; larger maps are made smaller. [pixel]"""
+"""Largest width of pictures; larger maps are reduced. [pixel]"""
 
 _CHROMATICITIES = 8
 
-# From what no sensor sees to what is brighter than any star's surface.
+# From darker than any sensor sees to brighter than the surface of any star.
 _DARKEST_WHITE = 1e-9
 _BRIGHTEST_WHITE = 1e15
 
-# A file that does not say what its values mean is shown as if 1.0 were EV 15's white.
+# A file that does not state its scale is shown as if 1.0 were the white of EV 15.
 UNKNOWN_WHITE = luminance_from_ev(15.0)
 
 
@@ -106,13 +106,13 @@ def _ev_of_survey(rows: Pixels, height: int, space: ColourSpace, white_luminance
 
 
 def _faces(rows: Pixels, edge: int, count: int) -> dict[str, Pixels]:
-    """Return the faces of a cubemap by name, of each as many rows and all columns."""
+    """Return the faces of a cubemap by name, equally many rows and all columns of each."""
     if rows.shape[1] == 4 * edge:
         return {
             face: rows[row * count : (row + 1) * count, column * edge : (column + 1) * edge]
             for face, (row, column) in cubemap.CROSS_ORIGINS.items()
         }
-    # Mirrored twice, a face is as it was.
+    # Mirroring is its own inverse.
     return {
         name: cubemap.openexr_face(name, face).astype(np.float32, copy=False)
         for name, face in zip(cubemap.FACES, rows.reshape(6, count, edge, 3), strict=True)

@@ -1,4 +1,4 @@
-"""Compiles every kernel ahead of its use, as for an image of a container."""
+"""Compiles every kernel in advance, as for a container image."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def compile_all() -> None:
 
 
 def solve(names: Iterable[str | Path], notice: Callable[[str], None]) -> None:
-    """Build the tables of presets that are not there.
+    """Build the missing tables of presets.
 
     Parameters
     ----------

@@ -52,7 +52,7 @@ class Baked(Light):
     preview_ev : float or None
         Exposure value of the picture.
     clamped : int
-        Negative values that a format without a sign lost.
+        Negative values that became 0 in a format without a sign.
     """
 
     files: tuple[Path, ...]
@@ -82,7 +82,7 @@ def bake(
     preset : Planet, str or Path
         A loaded planet, a preset's name, or the path of a preset's file.
     output : Path or str, optional
-        ``.exr`` or ``.hdr``; default a name that says what it is, in the current
+        ``.exr`` or ``.hdr``; default a name that describes it, in the current
         folder. Six faces replace ``{face}`` in it, or add ``_px`` and so on.
     settings : MapSettings, optional
         Sun, observer, map, colour and pixels.
@@ -132,12 +132,12 @@ def bake(
 def check_targets(
     output: Path, settings: MapSettings, preview: Path | None = None, preview_view: str = "aces2"
 ) -> None:
-    """Raise what can be said of a map's files before anything is computed.
+    """Raise the errors of a map's files that can be found before anything is computed.
 
     Raises
     ------
     InputError
-        If a suffix names no format, or the format cannot hold what is asked for.
+        If a suffix names no format, or the format cannot hold the map.
     OutputError
         If a file cannot be written under its name.
     """
@@ -160,7 +160,7 @@ def bake_scene(
 ) -> Baked:
     """Bake the map of a scene.
 
-    Parameters and errors are those of `bake`, with what else the files shall appear with.
+    Parameters and errors are those of `bake`, besides other files of the same set.
     """
     planet, settings = scene.planet, scene.settings
     paths = map_paths(output, settings)

@@ -1,4 +1,4 @@
-"""Linear RGB spaces: their primaries, their names in files, and the way there from XYZ."""
+"""Linear RGB spaces: their primaries, their names in files, and conversion from XYZ."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class ColourSpace:
     chromaticities : tuple of 8 float
         CIE xy of red, green, blue and of RGB (1, 1, 1).
     neutral : tuple of 2 float
-        CIE xy, in this space, of what looks as neutral as D65 does.
+        CIE xy, in this space, of what appears neutral as D65 does.
     """
 
     name: str

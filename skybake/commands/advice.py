@@ -1,4 +1,4 @@
-"""What else a user can try, behind a message that says what is wrong."""
+"""Advice on what else a user can try, after an error message."""
 
 from __future__ import annotations
 

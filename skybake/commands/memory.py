@@ -22,13 +22,13 @@ def memory_limit() -> int | None:
 
 
 def memory_text() -> str:
-    """Say how much memory there is."""
+    """Return how much memory there is, for messages."""
     limit = memory_limit()
     return "the system has no more" if limit is None else f"the limit is {limit >> 20} MB"
 
 
 def check_memory() -> None:
-    """Refuse to start what would be aborted on its way.
+    """Refuse to start what would be aborted later.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""How texts of times are meant: where, by which clock, on which day or in which season."""
+"""How texts of times are interpreted: by place, clock, day or season."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from skybake.errors import ArgumentError, InputError
 
 @dataclass(frozen=True)
 class Clock:
-    """How texts of times are meant.
+    """How texts of times are interpreted.
 
     Attributes
     ----------

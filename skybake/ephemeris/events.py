@@ -1,4 +1,4 @@
-"""Sunrise, sunset and the like: when the sun passes an elevation or the meridian."""
+"""Sunrise, sunset and other events: when the sun passes an elevation or the meridian."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def mean_solar_zone(place: Place) -> tzinfo:
 
 
 def event_time(event: str, day: date, place: Place, zone: tzinfo) -> datetime:
-    """Return when something happens to the sun.
+    """Return the time of an event.
 
     Parameters
     ----------
@@ -92,9 +92,9 @@ def _noon(day: date, place: Place, zone: tzinfo) -> datetime:
 
 
 def _culmination(near: datetime, place: Place, angle: float) -> datetime:
-    """Return when the sun's hour angle is that, near a time."""
+    """Return when the sun has an hour angle, near a time."""
     # The hour angle grows by a turn a day to 1e-4, so an error of 17 minutes becomes 0.1 s
-    # and then nothing.
+    # and then vanishes.
     for _ in range(3):
         off = math.remainder(hour_angle(near, place) - angle, 2.0 * math.pi)
         near -= _DAY * (off / (2.0 * math.pi))

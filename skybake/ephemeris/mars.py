@@ -23,7 +23,7 @@ _SIN_OBLIQUITY = 0.42565
 _EQUATORIAL_RADIUS, _POLAR_RADIUS = 3396.19, 3376.20
 """Of the ellipsoid of IAU 2000 (Seidelmann et al. 2002). [km]"""
 
-# Amplitude [deg], period [Julian years] and phase [deg] of what the other planets do.
+# Amplitude [deg], period [Julian years] and phase [deg] of perturbations by other planets.
 _PERTURBATIONS = (
     (0.0071, 2.2353, 49.409),
     (0.0057, 2.7543, 168.173),
@@ -37,7 +37,7 @@ _PERTURBATIONS = (
 _CENTRE = (10.691, 0.623, 0.050, 0.005, 0.0005)
 
 # TT is 32.184 s ahead of atomic time, and that was 10 s ahead of UTC when it began to
-# leap. It has leapt since at the beginning of these (IERS Bulletin C).
+# leap. Leap seconds since then, at the beginning of these (IERS Bulletin C).
 _TT_LESS_UTC_IN_1972 = 42.184
 _LEAPS = (
     *("1972-07", "1973-01", "1974-01", "1975-01", "1976-01", "1977-01", "1978-01"),

@@ -36,7 +36,7 @@ class Place:
     planet: str = "earth"
 
     def __post_init__(self) -> None:
-        """Refuse what is nowhere."""
+        """Refuse coordinates that do not exist."""
         if not abs(self.latitude) <= math.pi / 2.0 + 1e-9:
             raise ArgumentError(
                 "{latitude}: must be from -90deg to 90deg, got {angle:g}deg",
@@ -102,7 +102,7 @@ def find_place(
     Raises
     ------
     ArgumentError
-        If there is too little or too much of it.
+        If too few or too many coordinates are given.
     """
     if (latitude is None) != (longitude is None):
         given, missing = (
@@ -135,7 +135,7 @@ def check_planet(place: Place, planet: str | None) -> None:
     Raises
     ------
     ArgumentError
-        If they are different ones, or the planet is none of `PLANETS`.
+        If they are different ones, or the planet is not one of `PLANETS`.
     """
     if planet is None or planet == place.planet:
         return

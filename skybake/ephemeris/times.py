@@ -1,4 +1,4 @@
-"""Times as people type them, and steps through them."""
+"""Times as users type them, and steps through them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from skybake.units import parse_duration
 
 FIRST_YEAR, LAST_YEAR = 1000, 2999
 MAX_STEPS = 100_000
-"""Most moments of a range; more is a slip of the pen."""
+"""Most moments of a range; more is a typing error."""
 
 _OFFSET = r"(?:Z|[+-]\d\d:[0-5]\d(?::[0-5]\d)?)"
 _ISO = re.compile(rf"\d{{4}}-\d\d-\d\dT\d\d:\d\d(?::\d\d(?:\.\d{{1,6}})?)?({_OFFSET})?", re.ASCII)
@@ -43,7 +43,7 @@ def find_zone(name: str) -> ZoneInfo:
     """
     try:
         return ZoneInfo(name)
-    # KeyError for a name that is not there, the others for what is no name at all.
+    # KeyError for an unknown name, the others for an invalid one.
     except (KeyError, ValueError, OSError) as error:
         known = available_timezones()
         if not known:
@@ -65,7 +65,7 @@ def parse_time(
     ----------
     text : str
         ISO 8601 with an offset or, if there is a zone, without one; or one of
-        `EVENTS`, maybe with an offset.
+        `EVENTS`, optionally with an offset.
     place : Place, optional
         Of events.
     zone : tzinfo, optional
@@ -81,7 +81,7 @@ def parse_time(
     Raises
     ------
     InputError
-        If the text is no such time, if the local clock shows it never or twice, or if
+        If the text is not such a time, if the local clock shows it never or twice, or if
         the event does not happen.
     """
     event = _EVENT.fullmatch(text)
@@ -131,7 +131,7 @@ def parse_end(
 
 
 def parse_clock(text: str) -> float:
-    """Read a time of day, ``00:00`` to ``24:00``, maybe with seconds. [s]"""
+    """Read a time of day, ``00:00`` to ``24:00``, optionally with seconds. [s]"""
     match = re.fullmatch(r"(\d\d):([0-5]\d)(?::([0-5]\d))?", text, re.ASCII)
     seconds = 3600.0 * int(match[1]) + 60.0 * int(match[2]) + int(match[3] or 0) if match else -1.0
     if not 0.0 <= seconds <= _SECONDS_OF_DAY:
@@ -156,7 +156,7 @@ def steps(span: float, every: float) -> list[float]:
         raise InputError(f"must be longer than 0s, got {every:g}s")
     if span / every > MAX_STEPS:
         raise InputError(f"must give at most {MAX_STEPS} frames, got {span / every:.7g}")
-    # Ten seconds a thousand times are not quite as long as their sum in binary numbers.
+    # In binary numbers a sum of steps can differ from their product in its last bits.
     return [i * every for i in range(int(span / every + 1e-9) + 1)]
 
 

@@ -55,14 +55,14 @@ class ExrWriter(ScanlineWriter):
         return ready
 
     def check_whole(self) -> None:
-        """Check what readers do not, and read the last row back."""
+        """Check the table of chunks, which readers do not, and read the last row back."""
         fault = find_chunk_fault(self._temporary, self._height)
         if fault is not None:
             raise write_error(self._path, self._temporary, fault)
         super().check_whole()
 
     def _check_range(self, rows: Rows) -> None:
-        """Refuse what would come back as infinity; OpenImageIO stores it without a word."""
+        """Refuse what would come back as infinity; OpenImageIO stores it silently."""
         low, high = float(rows.min()), float(rows.max())
         if max(-low, high) <= self._largest:
             return
@@ -86,7 +86,7 @@ def image_spec(spec: MapSpec) -> OpenImageIO.ImageSpec:
     header["compression"] = name if level is None else f"{name}:{level:g}"
     if spec.envmap is not None:
         header["textureformat"] = _TEXTURE_FORMAT[spec.envmap]
-        # One level: else OpenImageIO awaits mip levels, and closing does not end the file.
+        # One level: otherwise OpenImageIO expects mip levels, and closing does not finish the file.
         header["openexr:levelmode"] = 0
     # What OpenImageIO derives from `oiio:ColorSpace`, for which it would read a configuration
     # of colours in 30 ms.

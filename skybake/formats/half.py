@@ -24,9 +24,9 @@ def half_rows(
     Parameters
     ----------
     rows : ndarray of float32, shape (row, column, channel)
-        What has a magnitude of 65520 or more, or is no number, becomes anything.
+        Values of magnitude 65520 or more, and NaN, give undefined halves.
     workers : Workers, optional
-        Who does the work.
+        Threads that do the work.
 
     Returns
     -------

@@ -35,7 +35,7 @@ class HdrWriter(ScanlineWriter):
     path, temporary : Path
         The target, for messages, and the file to write.
     spec : MapSpec
-        What it holds; `pixel`, `compression` and `envmap` have no place in the format.
+        What it holds; `pixel`, `compression` and `envmap` do not exist in the format.
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class HdrWriter(ScanlineWriter):
         super().__init__(path, temporary, header)
 
     def check_whole(self) -> None:
-        """Put in the header lines that OpenImageIO leaves out, and read the last row back."""
+        """Insert the header lines that OpenImageIO leaves out, and read the last row back."""
         _insert_after_first_line(self._temporary, self._header)
         super().check_whole()
 

@@ -38,7 +38,7 @@ def signals_held() -> Iterator[None]:
         try:
             for number in _ENDING:
                 handler = signal.getsignal(number)
-                # What is ignored stays so; of what is no handler of Python's nothing is known.
+                # Ignored signals stay ignored; handlers that are not Python's are unknown and stay.
                 if handler not in {signal.SIG_IGN, None}:
                     before[number] = handler
                     signal.signal(number, hold)
@@ -56,6 +56,6 @@ def wait_until_released(timeout: float) -> None:
     Parameters
     ----------
     timeout : float
-        After which the wait is given up. [s]
+        After which it stops waiting. [s]
     """
     _holding.acquire(timeout=timeout)

@@ -1,4 +1,4 @@
-"""Text in pictures, in the font that OpenImageIO brings along."""
+"""Text in pictures, in the font that comes with OpenImageIO."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def text_width(text: str, size: int) -> int:
     Parameters
     ----------
     text : str
-        A character that the font lacks takes no room.
+        A character that the font lacks has no width.
     size : int
         Height of the letters. [pixel]
     """

@@ -60,7 +60,7 @@ def write_preview(
     view : {"aces2", "aces1"}
         Display transform: ACES 2.0, or that of ACES 1.3.
     max_width : int
-        Larger maps are made smaller before the display transform. [pixel]
+        Larger maps are reduced before the display transform. [pixel]
 
     Raises
     ------
@@ -107,8 +107,8 @@ def open_preview(
 ) -> Iterator[Show]:
     """Yield ``show(pixels, colour_space, gain)``; the picture appears when the block ends.
 
-    Parameters and errors are those of `write_preview`, with texts that the file shall
-    hold beside the picture, and the files that it shall appear with.
+    Parameters and errors are those of `write_preview`, with texts that the file is
+    to hold besides the picture, and the files that it is to appear with.
     """
     check_preview(path, view)
     with ExitStack() as stack:
@@ -128,7 +128,7 @@ def open_preview(
 
 
 def check_preview(path: Path, view: str) -> None:
-    """Raise what can be said of a preview before anything is computed.
+    """Raise the errors of a preview that can be found before anything is computed.
 
     Raises
     ------
@@ -186,7 +186,7 @@ def _write_png(
         row = last
     output.close()
     message = output.geterror()
-    # The library's last block can fail to reach a full disk without a word.
+    # Writing the library's last block to a full disk can fail silently.
     if not written or message or not temporary.read_bytes().endswith(_END_OF_PNG):
         raise write_error(path, temporary, message)
 

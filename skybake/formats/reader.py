@@ -122,7 +122,7 @@ def read_attributes(path: Path) -> dict[str, Any]:
     Raises
     ------
     InputError
-        If the file is missing, damaged at its head, or not what its suffix says.
+        If the file is missing, damaged in its header, or of another format than its suffix.
     """
     source = _open(path)
     if source.format_name() != _FORMATS.get(path.suffix.lower()):
@@ -150,7 +150,7 @@ def _attributes(path: Path, source: OpenImageIO.ImageInput) -> dict[str, Any]:
 
 
 def _radiance_attributes(path: Path) -> dict[str, Any]:
-    """Return what a Radiance header says, under OpenEXR's names."""
+    """Return the attributes of a Radiance header, under OpenEXR's names."""
     try:
         header = read_header(path)
         exposure = float(header.get("EXPOSURE", "0"))
@@ -173,7 +173,7 @@ def _what_instead(path: Path) -> str:
 
 
 def _reason(source: Any) -> str:
-    """First line of what the library says, which may repeat bytes of a file."""
+    """First line of the library's message, which may repeat bytes of a file."""
     try:
         message = source.geterror()
     except UnicodeDecodeError:

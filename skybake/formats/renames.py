@@ -79,7 +79,7 @@ def rename_all(renames: Sequence[Rename]) -> None:
 
 
 def is_unfinished(renames: Sequence[Rename]) -> bool:
-    """Whether some files have their names and others not, and nothing could be done."""
+    """Whether some files have their names and others not, and this could not be undone."""
     return bool(renames) and (renames[0].folder / JOURNAL).exists()
 
 

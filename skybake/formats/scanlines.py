@@ -46,7 +46,7 @@ class ScanlineWriter:
 
     Notes
     -----
-    After a failed write nothing is written any more: OpenEXR 3.5 then waits for ever.
+    After a failed write nothing more is written, since OpenEXR 3.5 would wait for ever.
     """
 
     def __init__(self, path: Path, temporary: Path, spec: OpenImageIO.ImageSpec) -> None:
@@ -90,7 +90,7 @@ class ScanlineWriter:
         self.write_ready(y_begin, y_end, self.ready(rows))
 
     def ready(self, rows: Rows, _workers: Workers = ALL_CPUS) -> Rows:
-        """Check rows and turn them into what the file holds, on any thread."""
+        """Check rows and convert them to what the file holds, on any thread."""
         return rows
 
     def write_ready(self, y_begin: int, y_end: int, rows: Rows) -> None:

@@ -1,4 +1,4 @@
-"""Maps made smaller, band by band, since a large one fills the memory."""
+"""Reduces maps band by band, since a large one would fill the memory."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Shrinking:
     width, height : int
         Size of the whole picture. [pixel]
     max_width : int
-        Width that it is to have at most. [pixel]
+        Largest width of the result. [pixel]
 
     Notes
     -----
@@ -64,7 +64,7 @@ class Shrinking:
         return max(0, first), min(self._height, math.ceil(middle + reach) + _MARGIN)
 
     def _shrink(self, first: int, last: int) -> None:
-        """Make rows of the smaller picture, and leave of the others what later ones need."""
+        """Make rows of the smaller picture, and keep the rows that later ones need."""
         source = _empty(self._width, self._height, self._first, len(self._waiting))
         # Without memory for its copy of them the library divides by zero, which ends the process.
         np.empty_like(self._waiting)

@@ -15,8 +15,8 @@ HALF_MAX = 65504.0
 """Largest finite half float."""
 
 UNDATED = "1970:01:01 00:00:00"
-"""Date of a map that is of no date. OpenImageIO would write the present time, and the
-same map would give other bytes with every run."""
+"""Date of a map without a date. OpenImageIO would write the present time, and the
+same map would have different bytes in every run."""
 
 
 class Tagged(Protocol):
@@ -48,7 +48,7 @@ class MapSpec:
     white_luminance : float
         Luminance of RGB (1, 1, 1). [cd m⁻²]
     pixel : {"half", "float"}
-        Stored type; Radiance files hold RGBE whatever is said here.
+        Stored type; Radiance files hold RGBE regardless.
     compression : str
         One of `skybake.formats.compression.COMPRESSIONS`, with an optional level
         after a colon. Radiance files have one compression of their own.

@@ -1,4 +1,4 @@
-"""Names that files are to appear under, and what can be said of them beforehand."""
+"""Names that files are to appear under, and checks of them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _FULL = 1 << 20
 
 
 def check_target(path: Path) -> None:
-    """Raise what can be said of a target before anything is computed or written.
+    """Raise the errors of a target that can be found before anything is computed.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def faults_of(path: Path) -> Iterator[None]:
 
 
 def write_error(path: Path, temporary: Path, message: str) -> OutputError:
-    """Error for a write that failed; `message` is what the library says."""
+    """Error for a write that failed; `message` is that of the library."""
     reason = message.replace(str(temporary), str(path)).strip().replace("\n", "; ")
     if shutil.disk_usage(temporary.parent).free < _FULL:
         reason = f"a full disk ({reason})"

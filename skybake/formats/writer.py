@@ -27,7 +27,7 @@ def open_map(path: Path, spec: MapSpec) -> Iterator[MapWriter]:
     path : Path
         ``.exr`` or ``.hdr``.
     spec : MapSpec
-        What the file holds beside its pixels.
+        What the file holds besides its pixels.
 
     Yields
     ------
@@ -40,7 +40,7 @@ def open_map(path: Path, spec: MapSpec) -> Iterator[MapWriter]:
     Raises
     ------
     InputError
-        If the suffix or the spec asks for something that cannot be written.
+        If the suffix or the spec describes something that cannot be written.
     OutputError
         If the file cannot be written completely; the target is then as it was before.
     """
@@ -59,7 +59,7 @@ def open_maps(
     specs : mapping of Path to MapSpec
         The files, see `open_map`.
     files : WholeFiles, optional
-        What else they shall appear with, and when; by default they appear when the
+        The set that they are to appear with, and when; by default they appear when the
         block ends.
 
     Yields
@@ -87,7 +87,7 @@ def open_maps(
 
 
 def check_map_path(path: Path) -> None:
-    """Raise what can be said of a map's path before anything is computed.
+    """Raise the errors of a map's path that can be found before anything is computed.
 
     Raises
     ------

@@ -1,1 +1,1 @@
-"""What a map shows: who looks where at what light, in layers of pixels, and how it is stored."""
+"""What a map shows, as layers of pixels: settings, scenes, rasters and images."""

@@ -64,7 +64,7 @@ class Layers:
     def added(self) -> Pixels:
         """Return the light of all planes together, shape (rows, columns, 3).
 
-        The planes are used up: the result may be one of them.
+        The planes may be overwritten: the result may be one of them.
         """
         if not self.planes:
             return np.zeros((self.rows, self.columns, len(RGB)), np.float32)

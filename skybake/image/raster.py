@@ -61,7 +61,7 @@ class Raster:
 
 
 class _Shown:
-    """A part of a canvas, and what of the scene it shows."""
+    """A part of a canvas, and the part of the scene that it shows."""
 
     def __init__(self, scene: Scene, part: Part) -> None:
         self._scene, self._part = scene, part

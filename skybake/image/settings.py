@@ -19,7 +19,7 @@ PIXELS = ("auto", "half", "float")
 
 @dataclass(frozen=True)
 class View:
-    """Where the observer is and what of the sky around is shown.
+    """Where the observer is, and which part of the sky is shown.
 
     Attributes
     ----------
@@ -35,7 +35,7 @@ class View:
 
 @dataclass(frozen=True)
 class Lighting:
-    """What lights the sky, and what of it is shown.
+    """What lights the sky, and whether its disc is shown.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""From a sky to the table that pixels read."""
+"""The stages from a sky to the table that pixels read."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from skybake.sky.table import FoldedTable
 
 
 class Stages:
-    """Computes each stage when it is asked for, and keeps none."""
+    """Computes each stage when it is needed, and keeps none."""
 
     def spectral_table(self, sky: Sky) -> SpectralTable:
         """Light around the observer in all wavelengths; the one stage that traces rays."""

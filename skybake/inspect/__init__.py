@@ -1,1 +1,1 @@
-"""What a world is in numbers and plots, and its light in given directions."""
+"""A world in numbers and plots, and its light in given directions."""

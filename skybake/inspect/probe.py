@@ -1,4 +1,4 @@
-"""Radiance in given directions: the answer that maps are made of, as numbers."""
+"""Radiance in given directions, as numbers."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def read_directions(where: str, lines: Iterable[str]) -> Directions:
     Raises
     ------
     InputError
-        If it is no CSV, a column is missing, or a value is no number or no zenith angle.
+        If it is not CSV, a column is missing, or a value is not a number or not a zenith angle.
     """
     rows = csv.DictReader(lines)
     try:
@@ -114,7 +114,8 @@ def probe(
     wavelengths : ndarray, optional
         In any order; default the renderer's own. [nm]
     per_irradiance : bool, optional
-        Divide by the star's irradiance above the atmosphere, and leave out what is for eyes.
+        Divide by the star's irradiance above the atmosphere, without luminance and
+        chromaticity.
     illuminance : bool, optional
         Repeat the illuminances by sun and sky in every row.
     method : {"full", "hillaire", "march", "reference"}, optional

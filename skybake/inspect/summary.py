@@ -1,4 +1,4 @@
-"""Derived figures of a planet, by which a physicist judges whether it is as it was meant."""
+"""Derived figures of a planet, by which one can judge whether it is as intended."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def summarise(planet: Planet) -> Summary:
 
 
 def _try_all(planet: Planet) -> Medium:
-    """Sample everything as a rendering does, and return the medium that it would have."""
+    """Sample everything as a render does, and return its medium."""
     wavelengths = np.array(planet.wavelengths or WAVELENGTHS, dtype=float)
     medium = build_medium(planet, wavelengths)
     arrays = [

@@ -26,7 +26,7 @@ class Flat:
     value : object
         The argument itself, which must outlive the calls.
     kinds : list of int or str
-        What decides its type.
+        What determines its type.
     words : list of int or float
         What is passed.
     """
@@ -39,7 +39,7 @@ class Flat:
 
 
 def flatten(value: Any) -> Flat:
-    """Flatten what many calls of kernels are given: it costs two microseconds an array.
+    """Flatten an argument once for many calls of kernels; it costs two microseconds an array.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def flatten(value: Any) -> Flat:
 
 
 def flatten_all(arguments: tuple[Any, ...]) -> tuple[tuple[Kind, ...], list[int | float]]:
-    """Return what decides the types of a call's arguments, and the words that are passed."""
+    """Return what determines the types of a call's arguments, and the words that are passed."""
     kinds: list[Kind] = []
     words: list[int | float] = []
     for argument in arguments:

@@ -16,7 +16,7 @@ from skybake.jit.private_folder import PrivateFolder
 from skybake.jit.workers import cpu_count
 
 PAUSE = 0.01
-"""Time between two looks for a file. [s]"""
+"""Time between two checks for a file. [s]"""
 
 # With -P neither the working folder nor a script's is searched for modules. Where this
 # process has found skybake in one of them, that one folder is added.
@@ -31,7 +31,7 @@ runpy.run_module(module, run_name="__main__")
 
 @contextmanager
 def compile_in_background(module: str, names: frozenset[str]) -> Iterator[None]:
-    """Have another process compile kernels that this one needs later, where that helps.
+    """Have another process compile kernels that this one needs later, if that helps.
 
     Parameters
     ----------

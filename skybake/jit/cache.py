@@ -1,4 +1,4 @@
-"""The folder in which compiled kernels and tables stay between runs."""
+"""The folder in which compiled kernels and tables are kept between runs."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def cache_folder() -> PrivateFolder | None:
 def _open_folder() -> PrivateFolder | None:
     directory = version_directory()
     if directory is None:
-        warn_of_no_cache("SKYBAKE_CACHE_DIR: kernel cache must be set without a home folder")
+        warn_of_no_cache("SKYBAKE_CACHE_DIR: must be set where there is no home folder")
         return None
     try:
         is_new = not _exists(directory)
@@ -99,7 +99,7 @@ def check_cache() -> None:
 
 
 def share_cache() -> None:
-    """Let all users read this version's kernels and tables, as in an image of a container."""
+    """Let all users read this version's kernels and tables, as in a container image."""
     folder = cache_folder()
     if folder is not None:
         folder.path.parent.chmod(0o755)
@@ -114,7 +114,7 @@ def cache_root() -> Path | None:
 
 
 def version_directory() -> Path | None:
-    """Folder of this version, be it there or not; None without a home."""
+    """Folder of this version, which need not exist; None without a home."""
     parent = cache_root()
     return None if parent is None else parent / f"{_PREFIX}{source_hash(*KERNEL_SOURCES)}"
 
@@ -202,7 +202,7 @@ def _folders(parent: Path | None) -> Iterator[Path]:
 
 
 def shortened(path: Path | None) -> str:
-    """Return a path for a message of one line, which a name of thousands of letters is not."""
+    """Return a path for a message, shortened if it is very long."""
     text = str(path)
     return text if len(text) <= _LONGEST_NAME else f"{text[:_LONGEST_NAME]}..."
 
@@ -216,7 +216,7 @@ def _exists(directory: Path) -> bool:
 
 
 def _remove_unused(parent: Path) -> None:
-    """Remove what other versions left and no process has used for long."""
+    """Remove what other versions left and no process has used for a long time."""
     for folder in _folders(parent):
         with suppress(OSError):
             if time.time() - folder.stat().st_mtime > UNUSED_AFTER:
@@ -241,8 +241,8 @@ def source_hash(*sources: str) -> str:
 def _installed(package: str) -> list[str]:
     """Names of the folders of a package's metadata, which contain its version.
 
-    Neither is the package imported, nor what importlib.metadata parses mail with, which
-    takes a fiftieth of a render.
+    Neither the package nor importlib.metadata, which needs a parser of mail, is imported:
+    that would take a fiftieth of a render.
     """
     spec = find_spec(package)
     if spec is None or spec.origin is None:

@@ -47,18 +47,18 @@ _SAMPLE = _Outer(
 
 
 def check_arguments(folder: PrivateFolder | None) -> None:
-    """Make sure, once for each folder of kernels, that they see what they are given.
+    """Make sure, once for each folder of kernels, that they receive what they are given.
 
     Parameters
     ----------
     folder : PrivateFolder, optional
-        Folder of kernels that this version of numba and llvmlite compiles; it keeps
+        Folder of kernels that this version of numba and llvmlite compiles; it records
         that the check has passed.
 
     Raises
     ------
     SkybakeError
-        If a kernel would see anything else.
+        If a kernel would receive anything else.
     """
     stored = None if folder is None else folder.read(_FILE)
     if stored is not None and remove_digest(stored, _FILE) is not None:

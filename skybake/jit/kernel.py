@@ -1,4 +1,4 @@
-"""The one place that decides how kernels are compiled, kept and called."""
+"""Decides how kernels are compiled, kept and called."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ _CONSTANT = (int, float, complex, str, tuple)
 
 
 class Kernel:
-    """A function that is compiled for the types of its arguments when they are first met.
+    """A function that is compiled for the types of its arguments at their first use.
 
     Compiled code is kept on disk; only where there is none is numba imported. Other
-    kernels may call it too. It must not make arrays, raise exceptions or return more
+    kernels may call it. It must not make arrays, raise exceptions or return more
     than a number, and is serial; `skybake.jit.workers` runs several at once.
 
     Parameters
@@ -61,7 +61,7 @@ class Kernel:
 
     @property
     def _numba_type_(self) -> Any:
-        """What numba asks for where a kernel that it compiles calls this one."""
+        """What numba needs where a kernel that it compiles calls this one."""
         return self._dispatcher._numba_type_
 
     def _link(self, kinds: tuple[Kind, ...], arguments: tuple[Any, ...]) -> Entry:

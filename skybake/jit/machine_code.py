@@ -1,7 +1,7 @@
 """Compiled kernels as machine code, which is loaded and called without numba.
 
 Importing numba takes longer than a small map, and a process that finds its kernels on
-disk has no use for it: LLVM alone links them.
+disk does not need it: LLVM alone links them.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 Compiled kernels are programs: whoever can write one can run code as the user who reads it.
 So a folder is opened once, level by level from the root and through no symbolic link, each
 level is judged by its open descriptor, and files are named relative to the last one. What
-others exchange afterwards is not looked at again.
+others replace afterwards is not read.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _RELATIVE = os.open in os.supports_dir_fd
 _LINKED = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_CLOEXEC", 0)
 _LEVEL = _LINKED | getattr(os, "O_DIRECTORY", 0) | getattr(os, "O_PATH", os.O_RDONLY)
 _FOLDER = _LINKED | getattr(os, "O_DIRECTORY", 0) | os.O_RDONLY
-# A pipe in place of a file shall not be waited for.
+# Opening a pipe in place of a file must not block.
 _FILE = _LINKED | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
 
 _OTHERS_MAY_WRITE = stat.S_IWGRP | stat.S_IWOTH
@@ -52,7 +52,7 @@ class PrivateFolder:
         self._remove_leftovers()
 
     def is_open(self) -> bool:
-        """Whether it still is where files can be kept: neither removed nor closed."""
+        """Whether files can still be kept in it: it is neither removed nor closed."""
         try:
             state = _state(self._place)
         except OSError:
@@ -65,7 +65,7 @@ class PrivateFolder:
             return [entry.name for entry in entries]
 
     def has(self, name: str) -> bool:
-        """Whether a file is there, whatever is in it."""
+        """Whether a file exists, whatever it holds."""
         try:
             self._state(name)
         except OSError:
@@ -80,7 +80,7 @@ class PrivateFolder:
         name : str
             Of the file, without a folder.
         mark_used : bool, optional
-            Whether its time of change shall become now.
+            Whether to set its time of change to now.
 
         Returns
         -------
@@ -189,7 +189,7 @@ class PrivateFolder:
                 os.close(descriptor)
 
     def _remove_leftovers(self) -> None:
-        """Remove what writers left that were killed; the living hold a lock."""
+        """Remove what killed writers left; living ones hold a lock."""
         if sys.platform == "win32":
             return
         for name in self.names():
@@ -204,7 +204,7 @@ class PrivateFolder:
 
 
 def open_private_folder(path: Path) -> PrivateFolder:
-    """Open a folder; what is missing of its path is made, for this user alone.
+    """Open a folder; missing levels of its path are made, for this user alone.
 
     Parameters
     ----------
@@ -257,7 +257,7 @@ def _open_level(name: str, above: int, flags: int) -> int:
         return os.open(name, flags, dir_fd=above)
     with suppress(FileExistsError):
         os.mkdir(name, 0o700, dir_fd=above)
-        # Whatever the umask took away.
+        # Regardless of the umask.
         os.chmod(name, 0o700, dir_fd=above)
     return os.open(name, flags, dir_fd=above)
 
@@ -290,7 +290,7 @@ def _lock(descriptor: int, *, wait: bool) -> None:
     Raises
     ------
     BlockingIOError
-        If it shall not wait and another process holds it.
+        If it is not to wait and another process holds it.
     """
     if sys.platform != "win32":
         fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))

@@ -50,7 +50,7 @@ class PresetChanges:
     sources: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        """Refuse two hazes."""
+        """Refuse visibility and turbidity together."""
         if self.visibility is not None and self.turbidity is not None:
             raise ArgumentError("{turbidity}: cannot be combined with {visibility}")
 
@@ -118,7 +118,7 @@ class PresetChanges:
 
 
 def _load_quietly(preset: str | Path, overrides: list[Override]) -> Planet:
-    """Load a planet that is loaded once more for good, and shall warn then."""
+    """Load a planet without warnings, which its final load will give."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PresetWarning)
         return load_preset(preset, overrides)

@@ -22,7 +22,7 @@ _LEAST_SHARE = 0.01
 
 
 class _Haze(NamedTuple):
-    """Extinction of a planet's atmosphere, shared out to what can be changed.
+    """Extinction of a planet's atmosphere, split into the haze and the rest.
 
     `weights` are optical depths by the names of the aerosols that make the haze; with
     these `ground` and `column` are their extinction at the ground [km⁻¹] and their
@@ -111,7 +111,7 @@ def haze_for_turbidity(planet: Planet, ratio: float) -> dict[str, float]:
     Raises
     ------
     PresetError
-        If there is no such aerosol or no gas, or the other aerosols make more already.
+        If there is no such aerosol or no gas, or the other aerosols alone exceed it.
     """
     haze = _haze(planet)
     if haze.molecular == 0.0:

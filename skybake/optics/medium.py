@@ -20,8 +20,8 @@ ALTITUDE_NODES = 1024
 """Nodes of `Medium.density`; linear interpolation of exp(-h/1.2 km) is then good to 3e-5."""
 
 LANES = 4
-"""Kernels take wavelengths, and the curves of a basis, in multiples: what a loop over them leaves
-beside whole vectors is done by as many."""
+"""Kernels take wavelengths, and the curves of a basis, in multiples of this number, so that loops
+over them consist of whole vectors."""
 
 
 class Medium(NamedTuple):

@@ -102,7 +102,7 @@ def star_irradiance(star: Star, wavelengths: Array, bandwidth: float = BANDWIDTH
 
 
 def star_spectrum(star: Star) -> tuple[Array, Array]:
-    """Irradiance at the planet as finely as it is known, for integrals over colour.
+    """Irradiance at the planet at its full resolution, for integrals over colour.
 
     Parameters
     ----------

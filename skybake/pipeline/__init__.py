@@ -1,4 +1,4 @@
-"""Stages from a planet to pixels that stay hot: only what a change touches is computed anew."""
+"""Stages from a planet to pixels that stay hot: only what a change affects is computed anew."""
 
 from skybake.pipeline.pipeline import Pipeline
 from skybake.pipeline.sky import Sky

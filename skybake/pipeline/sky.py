@@ -1,4 +1,4 @@
-"""The sky of a planet as users of Python meet it: rays, images, pictures in a notebook."""
+"""The sky of a planet for users of Python: rays, images, pictures in a notebook."""
 
 from __future__ import annotations
 

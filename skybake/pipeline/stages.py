@@ -14,7 +14,7 @@ TableKey = tuple[str, str, float, float]
 
 
 class KeptStages(Stages):
-    """Stages that compute only what none of the last few requests has computed.
+    """Stages that compute only what the last few requests have not computed.
 
     A spectral table is that of an atmosphere, an observer's altitude and a sun's elevation;
     a folded one that of a spectral table, a colour space and a scale besides.
@@ -22,7 +22,7 @@ class KeptStages(Stages):
     Parameters
     ----------
     most : int
-        Spectral tables that stay, of 6 to 70 MB each; of folded ones twice as many do, of 5.
+        Spectral tables to keep, 6 to 70 MB each, and twice as many folded ones, 5 MB each.
     """
 
     def __init__(self, most: int) -> None:

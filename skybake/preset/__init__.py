@@ -1,4 +1,4 @@
-"""Planets from TOML: where presets live, what they may say, and every check on it."""
+"""Planets from TOML: where presets are, what they may contain, and every check of it."""
 
 from skybake.preset.extend import Override, Overrides, load_document, planet_name
 from skybake.preset.find import preset_names, preset_text

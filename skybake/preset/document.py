@@ -50,7 +50,7 @@ def dotted(key: Key) -> str:
 
 
 class Document:
-    """The tables of a preset, laid over one another.
+    """The tables of a preset, merged in order.
 
     Attributes
     ----------
@@ -87,12 +87,12 @@ class Document:
         self._merge(self.data, (), table, source)
 
     def set(self, key: Key, value: Any, source: Source) -> None:
-        """Lay one value over what is there; tables on the way to it are made.
+        """Set one value; missing tables around it are made.
 
         Raises
         ------
         PresetError
-            If it takes away what is not there.
+            If it removes what is not there.
         """
         self._check_depth(key, source)
         table = self.data
@@ -119,12 +119,12 @@ class Document:
         return self._sources[key]
 
     def place(self, key: Key) -> str:
-        """Where a key was written, and its name, as messages begin."""
+        """Where a key was written, and its name: the beginning of messages."""
         file = self.source(key).name
         return f"{file}: {dotted(key)}" if key else file
 
     def leaves(self) -> list[tuple[Key, Any]]:
-        """All values that are no tables, with their keys."""
+        """All values that are not tables, with their keys."""
         return _leaves(self.data, ())
 
     def _merge(self, into: dict[str, Any], at: Key, table: dict[str, Any], source: Source) -> None:

@@ -32,14 +32,14 @@ NAME = re.compile(r"[A-Za-z0-9_-]+")
 
 @dataclass(frozen=True, slots=True)
 class Override:
-    """A value to lay over a preset.
+    """A value that overrides one of a preset.
 
     Attributes
     ----------
     key : str
         Dotted; a constituent's may leave out the prefix ``constituents.``.
     value : Any
-        As parsed from TOML; "none" takes the key away.
+        As parsed from TOML; "none" removes the key.
     source : str
         Where it was written, for messages.
     """
@@ -50,23 +50,23 @@ class Override:
 
 
 Overrides = Mapping[str, Any] | Iterable[Override]
-"""Values to lay over a preset, by their dotted keys or with where they were written."""
+"""Values that override those of a preset, by dotted keys or with their sources."""
 
 
 def load_document(name_or_path: str | Path, overrides: Overrides = ()) -> Document:
-    """Read a preset with all that it extends, and lay values over it.
+    """Read a preset with all that it extends, and override values.
 
     Parameters
     ----------
     name_or_path : str or Path
         As of `load_preset`.
     overrides : mapping of str to Any, or iterable of Override
-        In the order in which they are laid.
+        In the order in which they are applied.
 
     Returns
     -------
     Document
-        Not checked yet, but for its form as TOML.
+        Not checked yet, except as TOML.
 
     Raises
     ------
@@ -135,7 +135,7 @@ def _parse(path: Path, where: str) -> dict[str, Any]:
     file = display_name(path)
     try:
         return tomllib.loads(text)
-    # A ValueError that is no TOMLDecodeError comes from an integer of thousands of digits.
+    # A ValueError that is not a TOMLDecodeError comes from an integer of thousands of digits.
     except (ValueError, RecursionError) as error:
         raise PresetError(f"{file}: not valid TOML: {error}") from error
 

@@ -1,4 +1,4 @@
-"""Where presets live: in the wheel beside the code, or at the top of the repository."""
+"""Where presets are: in the wheel beside the code, or at the top of the repository."""
 
 from __future__ import annotations
 
@@ -55,12 +55,12 @@ def find_preset(name_or_path: str | Path) -> Path:
 
 
 def is_path(text: str) -> bool:
-    """Whether a text means a file of the user's rather than the name of a preset."""
+    """Whether a text is the path of a user's file rather than the name of a preset."""
     return text.endswith(".toml") or "/" in text or "\\" in text
 
 
 def display_name(path: Path) -> str:
-    """How messages call a preset: bare name if it comes with skybake, else the path as given."""
+    """Name of a preset in messages: bare name if it comes with skybake, else the path as given."""
     return path.name if path.parent == _folder() else str(path)
 
 

@@ -17,7 +17,7 @@ from skybake.preset.recipe import recipe_of
 from skybake.preset.section import Gather, Section
 
 MAX_CONSTITUENTS = 16
-"""More than any known sky needs, few enough for kernels to hold in registers and cache."""
+"""More than any known sky needs, and few enough for registers and cache."""
 
 MAX_WAVELENGTHS = 128
 """Memory and time of an atmosphere's tables grow with each of them."""
@@ -40,7 +40,7 @@ def load_preset(name_or_path: str | Path, overrides: Overrides = ()) -> Planet:
     overrides : mapping of str to Any, or iterable of Override, optional
         What to change: values as in TOML by dotted keys, in which the prefix
         ``constituents.`` may be left out: ``{"aerosol.optical_depth": 0.3,
-        "ground.albedo": "grassland"}``. The value "none" takes a key away.
+        "ground.albedo": "grassland"}``. The value "none" removes a key.
 
     Returns
     -------
@@ -69,7 +69,7 @@ def planet_from_document(document: Document, *, name: str) -> Planet:
     Parameters
     ----------
     document : Document
-        The preset as it is in the end.
+        The merged preset.
     name : str
         The planet's name.
 

@@ -7,7 +7,7 @@ from difflib import get_close_matches
 from typing import Any
 
 MAX_SHOWN = 60
-"""Characters of a value that a message repeats."""
+"""Most characters of a value in a message."""
 
 
 def shown(value: Any) -> str:
@@ -20,5 +20,5 @@ def shown(value: Any) -> str:
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
-    """Known words that look like a word, the likest first; empty if none does."""
+    """Known words similar to a word, the most similar first; empty if none is."""
     return ", ".join(get_close_matches(word, list(known), n=3, cutoff=0.6))

@@ -1,4 +1,4 @@
-"""What a preset says, as frozen dataclasses in the units of the code."""
+"""The content of a preset, as frozen dataclasses in the units of the code."""
 
 from __future__ import annotations
 

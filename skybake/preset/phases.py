@@ -33,7 +33,7 @@ MAX_DEVIATION = 0.01
 """By which the integral of a table may differ from 1; within it the table is normalised."""
 
 NOTED_DEVIATION = 1e-3
-"""Less is the rounding of a table's digits, and needs no note."""
+"""Less is due to the rounding of a table's digits, and needs no warning."""
 
 
 def read_phase(section: Section) -> Phase:

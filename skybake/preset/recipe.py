@@ -18,7 +18,7 @@ def recipe_of(document: Document, folder: Path) -> dict[str, Any]:
     Parameters
     ----------
     document : Document
-        The preset as it is in the end.
+        The merged preset.
     folder : Path
         The preset's own. Paths that were relative to another one become absolute.
     """

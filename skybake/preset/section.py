@@ -46,7 +46,7 @@ class Section:
         return self._document.place(self._path(key))
 
     def fail(self, key: str, rule: str) -> NoReturn:
-        """Raise the fault of a key."""
+        """Raise an error about a key."""
         raise PresetError(f"{self.where(key)}: {rule}")
 
     def keys(self) -> list[str]:
@@ -181,7 +181,7 @@ class Section:
         return (*self._key, key) if key else self._key
 
     def _number(self, key: str, value: Any, least: float, most: float) -> float:
-        # bool is an int to Python, but `optical_depth = true` is a slip.
+        # bool is an int in Python, but `optical_depth = true` is a mistake.
         if isinstance(value, bool) or not isinstance(value, int | float):
             self.fail(key, f"must be a number, got {shown(value)}")
         # Written so that nan fails too.

@@ -16,7 +16,7 @@ _DATA = Path(__file__).resolve().parents[1] / "data"
 
 
 def is_user_file(name: str) -> bool:
-    """Whether a preset's string means a file of the user's rather than a table of skybake."""
+    """Whether a preset's string is the path of a user's file rather than a table of skybake."""
     return name.endswith(".csv") or "/" in name or "\\" in name
 
 
@@ -61,7 +61,7 @@ def load_table(name: str, where: str, source: Source, column: str) -> dict[str, 
 
 
 def file_digest(path: Path) -> str:
-    """SHA-256 of a table of the user's, in hexadecimal digits.
+    """SHA-256 of a user's table, in hexadecimal digits.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Pixels to directions and back: no physics, only where a map looks."""
+"""From pixels to directions and back; without physics."""
 
 from __future__ import annotations
 

@@ -142,7 +142,7 @@ class Cubemap(Projection):
 
 
 def openexr_flip(face: str) -> Literal["rows", "columns"]:
-    """How OpenEXR's cube environment turns a face of this module.
+    """How OpenEXR's cube environment flips a face of this module.
 
     ImfEnvmap.cpp, CubeMap: X and Z faces are mirrored left to right against the
     order of this module, Y faces top to bottom.
@@ -151,7 +151,7 @@ def openexr_flip(face: str) -> Literal["rows", "columns"]:
 
 
 def openexr_face(face: str, rows: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
-    """Turn a face, shape (edge, edge, ...), as OpenEXR's cube environment wants it, or back."""
+    """Turn a face, shape (edge, edge, ...), as OpenEXR's cube environment has it, or back."""
     return rows[::-1] if openexr_flip(face) == "rows" else rows[:, ::-1]
 
 

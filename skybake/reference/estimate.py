@@ -22,7 +22,7 @@ from skybake.reference.single import trace_single
 Array = npt.NDArray[np.float64]
 
 BATCHES = 32
-"""Independent means that a standard error is taken from, itself then good to 13 %."""
+"""Independent means from which a standard error is computed, to 13 %."""
 
 _ENDLESS = np.iinfo(np.int64).max
 
@@ -103,8 +103,8 @@ def radiance(
     directions are drawn around the last one, around the sun, or by the light
     field, and weighted by the balance heuristic (Veach 1997, eq. 9.8). In deep
     twilight and in a thick atmosphere with a narrow phase function the error's distribution
-    has a long tail: believe a standard error only after it halved with four
-    times the samples.
+    has a long tail: trust a standard error only if it halves with four times
+    the samples.
     """
     first, last = (2, math.inf) if orders is None else orders
     if first < 1 or last < first:

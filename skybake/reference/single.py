@@ -1,6 +1,6 @@
 """Light scattered or reflected exactly once, by quadrature along the ray and toward the sun.
 
-Two nested integrals and no table: slow, obvious, and what tables are judged by.
+Two nested integrals and no table: slow and simple, to check the tables against.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def trace_single(
         Steps along the rays and toward the sun, which grow with the distance from the
         lowest point; each has two Gauss-Legendre points.
     workers : Workers, optional
-        Who does the work.
+        Threads that do the work.
     """
     constituents, wavelengths = medium.extinction.shape
     single = np.zeros((r.size, constituents, wavelengths))
@@ -171,7 +171,7 @@ def _fill_sun_column(medium, r, mu_s, steps, scratch, out):
     if mu_s >= 0.0:
         fill_column(medium, r, mu_s, length, steps, scratch[0], out)
         return
-    # From the lowest point, which lies between, both ways.
+    # From the lowest point, which is between, both ways.
     r_lowest = r * math.sqrt(max(1.0 - mu_s * mu_s, 0.0))
     fill_column(medium, r_lowest, 0.0, length + r * mu_s, steps, scratch[0], out)
     add_column(medium, r_lowest, 0.0, -r * mu_s, steps, scratch[0], out)

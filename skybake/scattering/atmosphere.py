@@ -30,7 +30,7 @@ from skybake.scattering.transmittance import build_columns
 from skybake.transport.shells import altitude_shells
 
 KEPT = 4
-"""Atmospheres that stay in memory: of a sequence all maps share one, or each has its own."""
+"""Atmospheres kept in memory; the maps of a sequence share one, or each has its own."""
 
 _DELTA_M = tuple(name for name in ScaledMedium._fields if name != "medium")
 
@@ -45,7 +45,7 @@ def build_atmosphere(medium: Medium, method: str, workers: Workers = ALL_CPUS) -
     method : {"full", "hillaire"}
         All orders of scattering, or Hillaire's closure.
     workers : Workers, optional
-        Who does the work.
+        Threads that do the work.
 
     Raises
     ------
@@ -58,7 +58,7 @@ def build_atmosphere(medium: Medium, method: str, workers: Workers = ALL_CPUS) -
 
 
 def dark_atmosphere(medium: Medium, method: str, workers: Workers = ALL_CPUS) -> Atmosphere:
-    """Build all tables but the diffuse field, which is left without light.
+    """Build all tables except the diffuse field, which is left without light.
 
     Parameters are those of `build_atmosphere`.
     """
@@ -82,7 +82,7 @@ _recent: Kept[str, Atmosphere] = Kept(KEPT)
 def load_atmosphere(medium: Medium, method: str, workers: Workers = ALL_CPUS) -> Atmosphere:
     """Return the tables of a medium from memory or disk, or build and keep them.
 
-    A file that is missing, or is not bit by bit what was once written under its name, or
+    A file that is missing, or is not bit for bit what was written under its name, or
     whose arrays have other shapes than the medium asks for, is made anew;
     where none can be written the tables are built by every process.
     """
@@ -108,7 +108,7 @@ def atmosphere_content(medium: Medium, method: str) -> bytes:
 def adopt_atmosphere(medium: Medium, method: str, content: bytes) -> None:
     """Keep tables in memory that another machine has built, see `atmosphere_content`.
 
-    Content that is not as it was made is left alone: the tables are then built here.
+    Content that is damaged is ignored: the tables are then built here.
     """
     key = atmosphere_key(medium, method)
     arrays = None if _recent.has(key) else arrays_from_content(key, content)

@@ -34,7 +34,7 @@ def close_field(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> DiffuseF
     atmosphere : Atmosphere
         Its medium and columns; Hillaire's method truncates no peaks.
     workers : Workers, optional
-        Who does the work.
+        Threads that do the work.
 
     Returns
     -------

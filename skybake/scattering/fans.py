@@ -37,7 +37,7 @@ def group_rays(rays: Array, distances: Array | None = None) -> Fans:
     rays : ndarray of float64, shape (ray, 4)
         As `Fans` holds them.
     distances : ndarray of float64, shape (ray, distance), optional
-        What the rays of a fan have to share too.
+        What the rays of a fan have to share as well.
     """
     is_new = np.any(rays[1:, :2] != rays[:-1, :2], axis=1)
     if distances is not None:

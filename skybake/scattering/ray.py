@@ -20,7 +20,7 @@ from skybake.transport.samples import Samples, allocate_samples
 from skybake.transport.trace import MAX_ARC, trace
 
 LEAST_FANS = 3
-"""Fans for which a thread's work space is worth its making."""
+"""Fans for which a work space per thread pays off."""
 
 
 class RayLight(NamedTuple):
@@ -63,7 +63,7 @@ def trace_rays(
     max_arc : float, optional
         Largest angle of a step, see `trace`. [rad]
     workers : Workers, optional
-        Who does the work.
+        Threads that do the work.
 
     Returns
     -------
@@ -101,7 +101,7 @@ def chunk_of_fans(fans: int, workers: Workers) -> int:
 
 
 class LightOfFans:
-    """Adds the light along fans that are traced to what it has been given, from any thread.
+    """Adds the light along traced fans to given arrays, from any thread.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ class LightOfFans:
     ) -> None:
         scaled, field = atmosphere.scaled, atmosphere.field
         self._medium, self._field, self._fans = scaled.medium, field, fans
-        # A field on less than two altitudes is none.
+        # A field on less than two altitudes holds no light.
         self._has_field = field.altitude.size > 1
         self._sources = [flatten(each) for each in (scaled, PEAK_NODES, atmosphere.columns)]
         self._moments = [flatten(each) for each in (field, side_by_side(field), scaled.medium)]

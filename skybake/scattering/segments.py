@@ -38,9 +38,9 @@ class SegmentLight(NamedTuple):
     diffuse : ndarray of float32, shape (ray, distance, wavelength)
         As of `RayLight`, up to each distance. [sr⁻¹]
     transmittance : ndarray of float64, shape (ray, distance, wavelength)
-        What passes of light behind: all that is not scattered out of the forward peaks that
-        `ScaledMedium` leaves out. It dims the ground, diffuse light and constituents' single
-        scattering alike.
+        Share of the light behind that passes: all but what is scattered out of the forward
+        peaks that `ScaledMedium` leaves out. It dims the ground, diffuse light and the
+        single scattering of constituents alike.
     unscattered : ndarray of float64, shape (ray, distance, wavelength)
         What passes without being scattered at all: it dims a star, and of single scattering
         what the phase functions of peaks multiply.

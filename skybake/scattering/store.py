@@ -24,7 +24,7 @@ LARGEST_STORE = 1 << 30
 
 
 def read_tables(key: str) -> dict[str, Any] | None:
-    """Return the arrays of a file, or None if it is missing or not as it was written."""
+    """Return the arrays of a file, or None if it is missing or damaged."""
     folder = _folder()
     # The time of last use decides what is removed first when the folder is full.
     stored = None if folder is None else folder.read(_file(key), mark_used=True)
@@ -32,7 +32,7 @@ def read_tables(key: str) -> dict[str, Any] | None:
 
 
 def write_tables(key: str, arrays: Mapping[str, Any]) -> None:
-    """Keep arrays on disk; a full disk only costs the reuse."""
+    """Keep arrays on disk; if the disk is full they are computed again next time."""
     folder = _folder()
     if folder is None:
         return
@@ -53,7 +53,7 @@ def content_from_arrays(key: str, arrays: Mapping[str, Any]) -> bytes:
 
 
 def arrays_from_content(key: str, stored: bytes) -> dict[str, Any] | None:
-    """Return the arrays of a name's file, or None if it is not as it was written."""
+    """Return the arrays of a name's file, or None if it is damaged."""
     content = remove_digest(stored, _purpose(key))
     if content is None:
         return None

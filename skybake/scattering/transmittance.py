@@ -66,7 +66,7 @@ def build_columns(
     steps : int
         Gauss-Legendre steps of each column.
     workers : Workers, optional
-        Who does the work.
+        Threads that do the work.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""A sequence as a moving picture. Needs Pillow, the extra ``skybake[animate]``."""
+"""A sequence as an animated picture. Needs Pillow, the extra ``skybake[animate]``."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 Picture = npt.NDArray[np.uint8]
 
 STILL_WIDTH = 512
-"""Of the thumbnails that suit a moving picture. [pixel]"""
+"""Width of the thumbnails of an animated picture. [pixel]"""
 
 
 class _Kind(NamedTuple):
@@ -42,13 +42,13 @@ _REC709 = np.array([0.2126, 0.7152, 0.0722])
 
 
 def check_animation(path: Path, fps: float) -> None:
-    """Raise what can be said of a moving picture before anything is computed.
+    """Raise the errors of an animated picture that can be found before anything is computed.
 
     Raises
     ------
     InputError
-        If the suffix is not ``.webp`` or ``.gif``, the speed is none that the format
-        can hold, or Pillow is absent.
+        If the suffix is not ``.webp`` or ``.gif``, the format cannot
+        hold the speed, or Pillow is absent.
     OutputError
         If a file cannot be written under that name.
     """

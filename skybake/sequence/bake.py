@@ -92,7 +92,7 @@ def bake_sequence(
 
 
 def check_sequence(part: Plan, products: Products | None, view: str) -> None:
-    """Raise what can be said of all files before anything is computed.
+    """Raise the errors of all files that can be found before anything is computed.
 
     Raises
     ------
@@ -122,7 +122,7 @@ def frame_pool(
     Parameters
     ----------
     plan, part : Plan
-        All of the sequence, as which its frames are shown, and what is baked of it.
+        The whole sequence, which determines how frames are shown, and the part to bake.
     products, view, preview_ev, skip_existing, workers, dask, notice
         As of `bake_sequence`.
 
@@ -132,7 +132,7 @@ def frame_pool(
         If the cluster cannot be used.
     """
     if dask is None:
-        # First, because an exposure is found with the same tables, and without a word of them.
+        # First, because finding an exposure needs the same tables, and would print no notice.
         prepare(part, notice)
     previews = _preview_settings(plan, products, view, preview_ev)
     pool = (

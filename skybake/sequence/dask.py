@@ -27,7 +27,7 @@ from skybake.sky.sky import Sky
 from skybake.version import __version__
 
 CONNECT_WITHIN = 6
-"""Time after which a scheduler counts as absent. [s]"""
+"""Time after which a scheduler is considered absent. [s]"""
 
 WORKER_WITHIN = 30
 """The same of its first worker, which a cluster may only now be starting. [s]"""
@@ -114,7 +114,7 @@ def dask_pool(
 def finish_on_worker(
     frame: Frame, planet: Planet, tables: Tables, previews: PreviewSettings, *, skip_existing: bool
 ) -> FrameOutcome:
-    """Bake a frame on a worker, with tables that came from afar."""
+    """Bake a frame on a worker, with tables that were sent to it."""
     if tables is not None:
         adopt_atmosphere(*tables)
     return finish_frame(frame, planet, previews, _pipeline(), skip_existing=skip_existing)

@@ -32,7 +32,7 @@ def claim_of(recipe_hash: str, attributes: Mapping[str, Any]) -> str:
     Parameters
     ----------
     recipe_hash : str
-        As of `skybake.baking.recipe.recipe_hash`.
+        As of `skybake.image.recipe.recipe_hash`.
     attributes : mapping
         Of time and place, fit for JSON.
     """

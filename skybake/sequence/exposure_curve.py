@@ -18,7 +18,7 @@ _LOWEST, _HIGHEST = -30.0, 40.0
 
 @dataclass(frozen=True)
 class ExposureCurve:
-    """Exposure values by frames, straight between points and level beyond them.
+    """Exposure values by frames, linear between points and constant beyond them.
 
     Attributes
     ----------
@@ -37,7 +37,7 @@ class ExposureCurve:
     path: Path | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what is no curve."""
+        """Refuse an invalid curve."""
         if not self.points:
             raise InputError("exposure curve: must hold at least one frame and its ev, got none")
         for frame, ev in self.points:

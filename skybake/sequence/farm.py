@@ -69,7 +69,7 @@ def write_openjd(
     Raises
     ------
     InputError
-        If the specification jobtemplate-2023-09 has no room for it.
+        If the specification jobtemplate-2023-09 cannot hold it.
     OutputError
         If the file cannot be written.
     """
@@ -123,7 +123,7 @@ def _template(arguments: Sequence[str], values: list[str], name: str) -> dict[st
                         "onRun": {
                             "command": arguments[0],
                             "args": [*arguments[1:], ONLY, "{{Task.Param.Frames}}"],
-                            # A signal first, so that no half file stays behind.
+                            # A signal first, so that no partial file is left.
                             "cancelation": {"mode": "NOTIFY_THEN_TERMINATE"},
                         }
                     }

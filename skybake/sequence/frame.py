@@ -58,9 +58,9 @@ class FrameOutcome:
     number : int
         Its frame number.
     is_new : bool
-        Whether it was baked; False if its files were there.
+        Whether it was baked; False if its files existed.
     light : Light
-        What light it holds.
+        Its light.
     files : tuple of Path
         The map, one file or six.
     sha256 : tuple of str
@@ -88,7 +88,7 @@ def finish_frame(
     *,
     skip_existing: bool = False,
 ) -> FrameOutcome:
-    """Bake a frame, unless it is there.
+    """Bake a frame, unless it exists.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def finish_frame(
             )
             digests = {path: file_sha256(whole.written(path)) for path in frame.files()}
             write_digests(whole, frame.output, work.claim, digests)
-        # As it will be when its files are found instead.
+        # As read from its files if they are found later.
         light = light_from_attributes(attributes_from_light(baked))
     else:
         light, digests = found

@@ -1,4 +1,4 @@
-"""Frame ranges as people and farms write them, and file names with a frame number."""
+"""Frame ranges as users and farms write them, and file names with a frame number."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def parse_frames(text: str) -> tuple[int, ...]:
     ----------
     text : str
         Frames and ranges with commas between, as ``1-100x5,150,200-210``. A range
-        holds both ends, ``x5`` leaves every fifth. Numbers may be negative and may
+        includes both ends, ``x5`` selects every fifth. Numbers may be negative and may
         have leading zeros.
 
     Returns
@@ -87,7 +87,7 @@ def format_frames(frames: Iterable[int]) -> str:
 
 
 def _runs(frames: list[int]) -> Iterator[list[int]]:
-    """Cut ascending frames into runs of one step."""
+    """Split ascending frames into runs of one step."""
     first = 0
     while first < len(frames):
         end = first + 2
@@ -110,7 +110,7 @@ def _format_run(run: list[int]) -> str:
 
 
 def chunks(frames: Sequence[int], size: int) -> list[tuple[int, ...]]:
-    """Cut frames into chunks of a size; the last one holds what is left.
+    """Split frames into chunks of a size; the last one holds what is left.
 
     Raises
     ------

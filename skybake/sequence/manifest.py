@@ -83,7 +83,7 @@ class SequenceHeader:
     ----------
     preset : str
         Name of the world.
-    projection : {"equirect", "cubemap"}
+    projection : {"equirect", "cubemap", "fisheye", "perspective"}
         Kind of map.
     colorspace : str
         A name of `skybake.colour.space.COLOUR_SPACES`.
@@ -92,7 +92,7 @@ class SequenceHeader:
     sun_angular_diameter_deg : float
         Of the star's disc. [deg]
     recipe : mapping
-        What to bake again, fit for JSON.
+        What the maps are baked from, fit for JSON.
     fps : float
         Frames per second, for players and renderers.
     skybake : str

@@ -102,7 +102,7 @@ class Plan:
         return replace(self, frames=frames)
 
     def check(self, view: str, others: Iterable[Path] = ()) -> None:
-        """Raise what can be said of all targets before anything is computed.
+        """Raise the errors of all targets that can be found before anything is computed.
 
         Parameters
         ----------

@@ -55,11 +55,11 @@ def plan_sequence(
     changes : PresetChanges or mapping, optional
         Changes of the preset, or values by its dotted keys; values may be a `Ramp`.
     settings : MapSettings, optional
-        All else of the maps.
+        All other settings of the maps.
     exposure_curve : ExposureCurve, str or Path, optional
         What 1.0 stands for in each frame, or its CSV file.
     output : str or Path, optional
-        Pattern of the maps' files, as ``sky.####.exr``; default after the world.
+        Pattern of the maps' files, as ``sky.####.exr``; by default named after the world.
     preview : str, Path or bool, optional
         Pattern of the pictures' files, ``.png``; True for pictures beside the maps.
 

@@ -38,7 +38,7 @@ class Products:
     contact_sheet : Path or None
         One picture with all frames side by side, ``.png``.
     animation : Path or None
-        A moving picture, ``.webp`` or ``.gif``.
+        An animated picture, ``.webp`` or ``.gif``.
     fps : float
         Frames per second of the animated picture and of USD.
     command : tuple of str
@@ -74,7 +74,7 @@ class Products:
         return self._thumbnails.keep(outcome)
 
     def check(self) -> None:
-        """Raise what can be said of the files before anything is computed.
+        """Raise the errors of the files that can be found before anything is computed.
 
         Raises
         ------
@@ -98,7 +98,7 @@ class Products:
             check_animation(self.animation, self.fps)
 
     def write(self, result: SequenceResult) -> list[Path]:
-        """Write the files and return their names; of no frames none."""
+        """Write the files and return their names; none if there are no frames."""
         outcomes = result.outcomes
         if not outcomes:
             return []

@@ -1,4 +1,4 @@
-"""Bakes frames: every one that can be, and word of those that cannot."""
+"""Bakes frames, and reports those that fail."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from skybake.sky.sky import Sky
 
 @dataclass(frozen=True)
 class FrameEvent:
-    """News of one frame.
+    """Progress of one frame.
 
     Attributes
     ----------
@@ -26,7 +26,7 @@ class FrameEvent:
     kind : {"baked", "skipped", "failed", "retried"}
         A frame that is retried has failed and will be tried again.
     done, total : int
-        Frames that are baked, skipped or given up so far, and all there are.
+        Frames that are baked, skipped or failed so far, and the total.
     message : str
         Why it failed.
     """
@@ -40,7 +40,7 @@ class FrameEvent:
 
 @dataclass(frozen=True)
 class SequenceResult:
-    """What became of a sequence.
+    """Result of a sequence.
 
     Attributes
     ----------

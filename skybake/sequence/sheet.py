@@ -17,10 +17,10 @@ from skybake.formats.targets import check_target
 Picture = npt.NDArray[np.uint8]
 
 TILE_WIDTH = 256
-"""Of the thumbnails that suit a sheet. [pixel]"""
+"""Width of the thumbnails of a sheet. [pixel]"""
 
 BACKGROUND = 24
-"""Code value around the tiles: dark, so that skies are judged by themselves."""
+"""Code value around the tiles: dark, so that it does not affect the impression of skies."""
 
 _INK = (0.85, 0.85, 0.85)
 _SHAPE = 16.0 / 9.0
@@ -30,7 +30,7 @@ _LINE_SPACING = 1.4
 
 
 def check_sheet(path: Path) -> None:
-    """Raise what can be said of a contact sheet before anything is computed.
+    """Raise the errors of a contact sheet that can be found before anything is computed.
 
     Raises
     ------

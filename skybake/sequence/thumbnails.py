@@ -1,4 +1,4 @@
-"""Thumbnails of frames on disk, since those of thousands fill the memory."""
+"""Thumbnails of frames on disk, since those of thousands would fill the memory."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Thumbnails:
         return replace(outcome, thumbnails={})
 
     def pictures(self, width: int, numbers: Sequence[int]) -> Sequence[Picture]:
-        """Return the thumbnails of some frames, each read when it is asked for."""
+        """Return the thumbnails of some frames, each read when it is needed."""
         return _Pictures(self, width, numbers)
 
     def read(self, number: int, width: int) -> Picture:

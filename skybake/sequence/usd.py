@@ -27,7 +27,7 @@ _SUN_IS_IN_MAPS = (
 
 
 def check_usd(path: Path, projection: str, files: Iterable[str] = ()) -> None:
-    """Raise what can be said of a USD file before anything is computed.
+    """Raise the errors of a USD file that can be found before anything is computed.
 
     Parameters
     ----------

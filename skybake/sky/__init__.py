@@ -1,1 +1,1 @@
-"""The one physical answer: radiance from a direction, for an observer and a sun."""
+"""Radiance from a direction, for an observer and sources of light."""

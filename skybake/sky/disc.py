@@ -83,7 +83,7 @@ class Disc:
         return np.where((sine < 1.0)[:, None], profile / (mean * area), 0.0)
 
     def transmittance(self, zenith: Array) -> Array:
-        """Transmittance from the observer to space, 0 where the planet is in the way.
+        """Transmittance from the observer to space, 0 where the planet blocks the ray.
 
         Parameters
         ----------
@@ -132,7 +132,7 @@ class Disc:
 
 @kernel
 def fill_sight_columns(medium, columns, r, mu, out, visible):
-    """Write the columns of rays to space, and whether no ground is in the way."""
+    """Write the columns of rays to space, and whether they miss the ground."""
     for i in range(mu.size):
         start, start_mu = r, mu[i]
         visible[i] = True

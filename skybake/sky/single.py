@@ -1,4 +1,4 @@
-"""The first order of the light of the sky alone, to check the tables by."""
+"""Single scattering alone, to check the tables against."""
 
 from __future__ import annotations
 

@@ -106,7 +106,7 @@ pwd.getpwuid = unknown
 def test_without_a_home_kernels_run_with_one_warning():
     """As a user whom the system does not know, which containers have."""
     result = run(script=HOMELESS + SCRIPT)
-    check_that_nothing_is_kept(result, "kernel cache must be set without a home folder")
+    check_that_nothing_is_kept(result, "must be set where there is no home folder")
 
 
 def test_a_home_holds_the_cache_unless_the_desktop_says_where(tmp_path):

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _GIVEN = "skybake.commands.options.emit.given"
 
-# What only concerns the machine that gathers the frames, or this one call.
+# Options that concern only the machine that collects the frames, or only this call.
 _LEFT_OUT = {
     *("only", "emit_commands", "emit_openjd", "chunk_size", "dry_run", "as_json", "dask"),
     *("manifests", "contact_sheet", "animate", "fps", "style", "quiet"),
@@ -27,11 +27,11 @@ _OF_PREVIEWS = {"preview_ev", "view"}
 _PATHS = {"output", "preview", "exposure_curve"}
 
 HOW = frozenset({"skip_existing", "retry", "workers"})
-"""Options that say how frames are baked, and not which."""
+"""Options that determine how frames are baked, not which."""
 
 
 class RememberingCommand(click.Command):
-    """A command that knows its options as they were typed."""
+    """A command that remembers its options as they were typed."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Parse, and keep the texts of the options."""
@@ -70,7 +70,7 @@ def is_asked(options: Mapping[str, Any]) -> bool:
 
 
 def emit_needs(options: Mapping[str, Any]) -> Needs:
-    """Return what the options of emitted commands need, and those that they leave no effect."""
+    """Return what the options of emitted commands need, and which options they exclude."""
     emits = is_asked(options)
     return {
         "chunk_size": (emits, "needs --emit-commands or --emit-openjd"),
@@ -116,7 +116,7 @@ def command_from_options(
     plan : Plan
         What they ask for.
     leave_out : collection of str, optional
-        Names of options that the command shall not have either.
+        Names of other options to leave out.
     """
     given: dict[str, Any] = context.meta[_GIVEN]
     left_out = _LEFT_OUT | set(leave_out)
@@ -137,7 +137,7 @@ def command_from_options(
 
 
 def _word(option: str, name: str, value: Any) -> str:
-    # Flags, and options whose value was left out, come as something else.
+    # Flags, and options whose value was omitted, have no text.
     if not isinstance(value, str):
         return option
     is_file = name == "preset" and (value.endswith(".toml") or os.sep in value)
@@ -149,7 +149,7 @@ def _word(option: str, name: str, value: Any) -> str:
 
 
 def _with_absolute_file(change: str) -> str:
-    """Make a file of the user's absolute in ``KEY=FILE`` or ``FILE``."""
+    """Make the path of a user's file absolute in ``KEY=FILE`` or ``FILE``."""
     from skybake.preset.tables import is_user_file
 
     key, equals, value = change.rpartition("=")

@@ -135,7 +135,7 @@ def map_settings(options: Mapping[str, Any], **others: float) -> MapSettings:
     options : mapping
         With the values of `map_options`.
     **others : float
-        Where the sun and the observer are, by the names of `skybake.image.settings`.
+        Positions of the sun and the observer, by the names of `skybake.image.settings`.
 
     Raises
     ------

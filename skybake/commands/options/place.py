@@ -1,4 +1,4 @@
-"""The options that say where the sun is seen from and by which clock."""
+"""The options of the place from which the sun is seen, and of its clock."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ place_options = options_together(
 def place_needs(*, is_timed: bool, time: str) -> Needs:
     """Return what the options of a place need: `time`, the option or options of a time.
 
-    Where these are given, the sun cannot be put by angles.
+    If these are given, the sun cannot be placed by angles.
     """
     where = ("latitude", "longitude", "site", "solar_longitude", "zone", "day", "refraction")
     return dict.fromkeys(where, (is_timed, f"needs {time}")) | dict.fromkeys(
@@ -86,12 +86,12 @@ def place_from_options(context: click.Context, time: str) -> Place:
     context : click.Context
         With `place_options` and ``--preset``.
     time : str
-        The option that asks for a time.
+        The option or options of the time.
 
     Raises
     ------
     click.UsageError
-        If there is too little or too much of a place, or it is on another planet than
+        If too few or too many coordinates are given, or it is on another planet than
         the preset's.
     PresetError
         If the preset cannot be read.

@@ -1,4 +1,4 @@
-"""The options of files about a sequence: manifests, contact sheet, moving picture."""
+"""The options of files about a sequence: manifests, contact sheet, animated picture."""
 
 from __future__ import annotations
 
@@ -52,9 +52,9 @@ product_options = options_together(
 
 
 def products_from_options(context: click.Context, plan: Plan) -> Products:
-    """Return what shall be written about a sequence.
+    """Return what is to be written about a sequence.
 
-    A part of a sequence has no manifest by default: it would take that of another part.
+    A part of a sequence has no manifest by default, since it would replace that of another.
     """
     from skybake.sequence.products import Products, default_manifest
 

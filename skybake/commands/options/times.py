@@ -50,7 +50,7 @@ def moment_needs(context: click.Context) -> Needs:
 
 
 def moment_from_options(context: click.Context) -> Moment | None:
-    """Return the moment that ``--time`` asks for.
+    """Return the moment of ``--time``.
 
     Raises
     ------
@@ -83,12 +83,12 @@ def span_needs(context: click.Context) -> Needs:
 
 
 def span_from_options(context: click.Context) -> TimeSpan | None:
-    """Return the span of time that ``--from`` and ``--to`` ask for.
+    """Return the span of time of ``--from`` and ``--to``.
 
     Raises
     ------
     click.UsageError
-        If its place is none.
+        If its place is incomplete.
     PresetError
         If the preset cannot be read.
     """

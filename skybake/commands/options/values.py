@@ -1,7 +1,7 @@
 """Values of options: how they are read, and what they may be.
 
 The choices repeat those of the engine, because help and completion must not wait
-for the engine's imports; a test holds both lists to each other.
+for the engine's imports; a test compares both lists.
 """
 
 from __future__ import annotations
@@ -37,13 +37,13 @@ VIEWS = ("aces2", "aces1")
 
 Paths = TypeVar("Paths", Path | None, tuple[Path, ...])
 
-# The tolerance is for 5400arcmin, which is 90deg but for the last bit.
+# The tolerance is for 5400arcmin, which differs from 90deg in the last bit.
 _RIGHT_ANGLE = math.pi / 2 + 1e-9
 
 _MOST_TURNS = 1000
 _FASTEST = 1000.0
 
-# Click shows text and path of a click.BadParameter, but of a ValueError only the value.
+# Click shows the message of a click.BadParameter, but only the value of a ValueError.
 
 
 def elevation(text: str) -> float:
@@ -55,7 +55,7 @@ def elevation(text: str) -> float:
 
 
 def bearing(text: str) -> float:
-    """Read an angle of up to a thousand turns; many more would leave no digits to it. [rad]"""
+    """Read an angle of up to a thousand turns; many more would leave it no precision. [rad]"""
     angle = _parse(text, parse_angle)
     if abs(angle) > 4 * _RIGHT_ANGLE * _MOST_TURNS:
         raise click.BadParameter(f"must be at most {_MOST_TURNS} turns, got {text}")
@@ -165,7 +165,7 @@ def frame_rate(text: str) -> float:
 
 
 def ramp(read: Callable[[str], float]) -> Callable[[str], Ramp]:
-    """Return what reads a value, or two with ``..`` between."""
+    """Return a reader of a value, or of two with ``..`` between."""
 
     def read_ramp(text: str) -> Ramp:
         if "..." in text:
@@ -173,7 +173,7 @@ def ramp(read: Callable[[str], float]) -> Callable[[str], Ramp]:
         first, dots, last = text.partition("..")
         found = Ramp(read(first), read(last if dots else first))
         unit = last.lstrip("+-.0123456789 ")
-        # Of 5..10km, people mean kilometres and a bare 5 is metres.
+        # In 5..10km users mean kilometres, but a bare 5 is metres.
         if unit and first.strip()[-1].isdigit() and read(first + unit) != found.first:
             raise click.BadParameter(f"must have a unit on both sides, got {text}")
         return found

@@ -58,7 +58,7 @@ def world_from_options(context: click.Context) -> Planet:
 
 
 def _read_change(text: str) -> tuple[str, Any]:
-    """Read ``KEY=VALUE``; a value that is no TOML is a text."""
+    """Read ``KEY=VALUE``; a value that is not TOML is a string."""
     key, equals, value = (part.strip() for part in text.partition("="))
     if not (key and equals and value):
         raise click.BadParameter(
@@ -68,7 +68,7 @@ def _read_change(text: str) -> tuple[str, Any]:
 
 
 def read_value(text: str) -> Any:
-    """Read a value of TOML; anything else is taken as the text that it is."""
+    """Read a value of TOML; anything else is taken as a string."""
     try:
         document = tomllib.loads(f"value = {text}")
     except (ValueError, RecursionError):

@@ -22,7 +22,7 @@ STYLES = ("auto", "bar", "plain", "openjd", "none")
 
 @contextmanager
 def map_progress(*, quiet: bool) -> Iterator[Callable[[float], None] | None]:
-    """Yield a function that takes the share done, or None without a terminal."""
+    """Yield a function that takes the completed share, or None without a terminal."""
     if quiet or not sys.stderr.isatty():
         yield None
         return
@@ -66,7 +66,7 @@ class FrameProgress:
         return f"{event.done}/{event.total} {news}{self._speed(event)}"
 
     def _speed(self, event: FrameEvent) -> str:
-        """Frames in a second, and how long the others will take; of skipped ones nothing."""
+        """Frames per second and remaining time; empty as long as all frames are skipped."""
         if not self._baked:
             return ""
         rate = self._baked / (time.perf_counter() - self._started)

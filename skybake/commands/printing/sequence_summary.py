@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def print_plan(plan: Plan, *, as_json: bool) -> None:
-    """Print each frame's sun, time and file, or all that is known of it as one JSON object."""
+    """Print each frame's sun, time and file, or everything about it as one JSON object."""
     frames = plan.summary()
     if as_json:
         click.echo(json.dumps({"frames": frames}))
@@ -56,7 +56,7 @@ def print_json(result: SequenceResult, written: Sequence[Path], seconds: float) 
 
 
 def print_failures(result: SequenceResult, *, openjd: bool) -> None:
-    """Say why frames failed, and which; also as an Open Job Description expects it."""
+    """Print which frames failed and why; also as an Open Job Description expects it."""
     from skybake.sequence.frames import format_frames
 
     for number, message in result.failures.items():
