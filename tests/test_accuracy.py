@@ -161,7 +161,7 @@ def mapped_and_probed(planet, altitude, sun, tmp_path):
     text = tuple((f"{a}", f"{b}") for a, b in zip(zenith[row], azimuth, strict=True))
     views = Directions(text, zenith[row], azimuth)
     answer = probe(
-        load_preset(planet), views, sun_elevation=settings.sun_elevation, altitude=altitude
+        load_preset(planet), views, sun_elevation=settings.lighting.sun_elevation, altitude=altitude
     )
     luminance = [float(line["luminance_cd_m2"]) for line in csv.DictReader(io.StringIO(answer))]
     return pixels[row, column, 1].astype(float), np.array(luminance)

@@ -57,7 +57,7 @@ context = multiprocessing.get_context("fork")
 results = context.Queue()
 child = context.Process(target=use, args=(results,))
 child.start()
-print(results.get(timeout=60))
+print(results.get(timeout=150))
 child.join(60)
 thread.join()
 """
@@ -82,7 +82,9 @@ def load(results):
     results.put(atmosphere.load_atmosphere(medium, "hillaire").shells.size)
 
 atmosphere.build_atmosphere = wait_and_build
-thread = threading.Thread(target=atmosphere.load_atmosphere, args=(medium, "hillaire"))
+thread = threading.Thread(
+    target=atmosphere.load_atmosphere, args=(medium, "hillaire"), daemon=True
+)
 thread.start()
 begun.wait()
 context = multiprocessing.get_context("fork")
@@ -90,7 +92,7 @@ results = context.Queue()
 with atmosphere._recent._lock:
     child = context.Process(target=load, args=(results,))
     child.start()
-print(results.get(timeout=60) > 1)
+print(results.get(timeout=150) > 1)
 child.join(60)
 go_on.set()
 thread.join()

@@ -130,8 +130,8 @@ def test_no_distance_gathers_nothing_and_hides_nothing(name, h, elevation):
 )
 def test_light_only_grows_and_transmittance_only_falls_with_distance(place, distances):
     light = trace_segments(truth_atmosphere(place[0]), *rays(*place), distances)
-    # What is diffuse is summed in single precision.
-    assert (np.diff(light.single, axis=1) >= 0.0).all()
+    # Sums are in single precision.
+    assert (np.diff(light.single, axis=1) >= -1e-7 * light.single.max()).all()
     assert (np.diff(light.diffuse, axis=1) >= -1e-7 * light.diffuse.max()).all()
     for passes in (light.transmittance, light.unscattered):
         assert (np.diff(passes, axis=1) <= 0.0).all()
