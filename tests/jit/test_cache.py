@@ -173,7 +173,7 @@ def is_digested(path):
 def test_every_module_with_kernels_counts():
     package = Path(skybake.__file__).parent
     modules = [path for path in package.rglob("*.py") if "\n@kernel\n" in path.read_text()]
-    assert len(modules) > 10
+    assert package / "scattering" / "field.py" in modules
     assert [path for path in modules if not is_digested(path)] == []
     assert not is_digested(package / "baking" / "write.py")
 
@@ -197,16 +197,15 @@ while functions:
         called = getattr(value, "py_func", value)
         if inspect.isfunction(called) and called not in known:
             functions.add(called)
-print(len(set(compiled)), *sorted({inspect.getsourcefile(function) for function in known}))
+print(*sorted({inspect.getsourcefile(function) for function in known}))
 """
 
 
 def test_every_kernel_that_a_render_uses_counts(tmp_path):
     """With all that they call, whatever it is decorated with."""
     script = USED.replace("sys.argv[1]", repr(str(tmp_path / "sky.exr")))
-    count, *files = run(os.environ["SKYBAKE_CACHE_DIR"], script=script).stdout.split()
-    assert int(count) > 5
-    assert len(files) > 10
+    files = run(os.environ["SKYBAKE_CACHE_DIR"], script=script).stdout.split()
+    assert {"trace.py", "field.py"} <= {Path(file).name for file in files}
     assert [file for file in files if not is_digested(Path(file))] == []
 
 
