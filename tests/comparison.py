@@ -98,13 +98,17 @@ def compare(
     name: str, method: str, altitudes: tuple[float, ...], suns: tuple[float, ...]
 ) -> Comparison:
     """Compare a method with the table of an atmosphere at those of its altitudes and suns."""
-    table = load_truth(name)
-    parts, errors = [], []
-    for altitude, elevation in places(table):
-        if altitude in altitudes and elevation in suns:
-            rows = counted(rows_at(table, altitude, elevation))
-            parts.append(rows)
-            sky = truth_skylight(name, elevation, altitude, method)
-            errors.append(radiance_at(sky, rows) / rows["radiance"] - 1.0)
-    rows = np.concatenate(parts)
-    return Comparison(rows, np.concatenate(errors), rows["stderr"] / rows["radiance"])
+    return join(
+        [
+            compare_place(name, method, altitude, elevation)
+            for altitude, elevation in places(load_truth(name))
+            if altitude in altitudes and elevation in suns
+        ]
+    )
+
+
+def compare_place(name: str, method: str, altitude: float, elevation: float) -> Comparison:
+    """Compare a method with the table of an atmosphere at one altitude and sun."""
+    rows = counted(rows_at(load_truth(name), altitude, elevation))
+    radiance = radiance_at(truth_skylight(name, elevation, altitude, method), rows)
+    return Comparison(rows, radiance / rows["radiance"] - 1.0, rows["stderr"] / rows["radiance"])

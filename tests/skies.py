@@ -1,12 +1,11 @@
 """Skies of the atmospheres that the reference tables were computed for."""
 
-import functools
 import math
 
 import numpy as np
 
 from skybake.angles import cosine_between
-from skybake.scattering.atmosphere import build_atmosphere
+from skybake.scattering.atmosphere import load_atmosphere
 from skybake.sky.observer import Observer
 from skybake.sky.single import SingleSkylight
 from skybake.sky.skylight import Skylight
@@ -29,7 +28,8 @@ def white_source(elevation, azimuth=180.0, *, irradiance=1.0, wavelengths=3, **o
 def truth_skylight(name, elevation, altitude, method="full"):
     """Light of one white source in a `truth_medium`; elevation in degrees, altitude in km."""
     kind = SingleSkylight if method == "march" else Skylight
-    return kind(truth_atmosphere(name, method), Observer(altitude), (white_source(elevation),))
+    solved = truth_atmosphere(name, "full" if method == "full" else "hillaire")
+    return kind(solved, Observer(altitude), (white_source(elevation),))
 
 
 def first_order(skylight):
@@ -42,9 +42,9 @@ def first_order(skylight):
     return Skylight(atmosphere, skylight.observer, skylight.sources)
 
 
-@functools.cache
 def truth_atmosphere(name, method="full"):
-    return build_atmosphere(truth_medium(name), "full" if method == "full" else "hillaire")
+    """Tables of a `truth_medium`, which modules of tests share on disk."""
+    return load_atmosphere(truth_medium(name), method)
 
 
 def view_cosines(view_zenith, azimuth, elevation):

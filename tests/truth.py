@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from pathlib import Path
 
 import numpy as np
@@ -68,6 +69,7 @@ def cornette_shanks(theta: Array, g: float) -> Array:
     return scale * henyey_greenstein(theta, g)
 
 
+@functools.cache
 def _load(pattern: str) -> np.ndarray:
     paths = sorted(_FOLDER.glob(pattern))
     if not paths:

@@ -21,6 +21,9 @@ NEGLIGIBLE_OF_SPAN = 1e-6
 """Share of a span's scattering below which it leaves out an order l of a sample: spans add up to
 a whole, so what is small beside one has to be kept better than along a whole ray."""
 
+SHORTEST = 1e-9
+"""To which distances are taken, so that no step is shorter. [km]"""
+
 MAX_DISTANCES = 1024
 """Distances of one ray at most: each ends a step, and a ray's steps are limited."""
 
@@ -71,8 +74,7 @@ def trace_segments(
     atmosphere, r, mu, mu_s, nu, max_arc, workers
         As of `trace_rays`.
     distances : array_like, shape (distance,) or (ray, distance)
-        From the rays' starts, ascending; may be infinite. [km]
-
+        From the rays' starts, ascending; may be infinite. Taken to the micrometre. [km]
     negligible_share : float, optional
         As of `add_diffuse`.
 
@@ -144,7 +146,8 @@ def _sum_spans(
 
 def _check_distances(distances: npt.ArrayLike, rays: int) -> Array:
     """Distances of each ray, shape (ray, distance)."""
-    ends = np.asarray(distances, dtype=float)
+    # Steps that are shorter would be lost among the roundings of their ends.
+    ends = np.round(np.asarray(distances, dtype=float) / SHORTEST) * SHORTEST
     if ends.ndim not in (1, 2) or not 1 <= ends.shape[-1] <= MAX_DISTANCES:
         raise InputError(
             f"distances: must be 1 to {MAX_DISTANCES} for a ray, got an array of shape {ends.shape}"

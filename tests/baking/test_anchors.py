@@ -106,15 +106,16 @@ def test_zenith_of_clear_air_has_the_colour_of_the_monte_carlo(elevation, x, y):
     np.testing.assert_allclose(xy, [x, y], atol=0.002)
 
 
-# The same Monte Carlo; Seidelmann (1992), Explanatory Supplement to the Astronomical Almanac, gives
-# 29.9, 3.41, 0.348 and 0.042 lx.
+# The same Monte Carlo, whose standard error grows from 1 % at -4 deg to 8 % at -12 deg. Ours was
+# brighter by 2.9, 2.7, 8.5 and 21.2 %.
 @pytest.mark.parametrize(
-    ("elevation", "illuminance"), [(-4.0, 36.0), (-6.0, 3.57), (-8.0, 0.353), (-10.0, 0.042)]
+    ("elevation", "illuminance", "tolerance"),
+    [(-4.0, 36.0, 0.03), (-6.0, 3.57, 0.03), (-8.0, 0.353, 0.09), (-10.0, 0.042, 0.22)],
 )
-def test_twilight_of_clear_air_is_as_bright_as_by_monte_carlo(elevation, illuminance):
+def test_twilight_of_clear_air_is_as_bright_as_by_monte_carlo(elevation, illuminance, tolerance):
     made = scene("air, ozone", elevation)
     total = made.sky_illuminance() + made.sun_illuminance()[1]
-    assert total == pytest.approx(illuminance, rel=0.25)
+    assert total == pytest.approx(illuminance, rel=tolerance)
 
 
 @pytest.mark.parametrize(("elevation", "x", "y"), [(-4.0, 0.2469, 0.2431), (-6.0, 0.2241, 0.2158)])

@@ -37,6 +37,8 @@ print("written")
 
 # How many of the names were there before.
 BEFORE = pytest.mark.parametrize("before", [0, 3, 6])
+# The first call, one amid the others and the last, or every one, each in a process of its own.
+CALLS = pytest.mark.parametrize("calls", ["some", pytest.param("all", marks=pytest.mark.slow)])
 
 
 def write(folder, names=NAMES, text=NEW):
@@ -84,24 +86,25 @@ def is_new(folder):
     return listing(folder) == NAMES and {(folder / name).read_text() for name in NAMES} == {NEW}
 
 
+@CALLS
 @BEFORE
 @pytest.mark.parametrize("call", ["rename", "fsync"])
-def test_where_one_call_fails_all_is_as_it_was(folder, before, call):
-    calls = count_calls(folder, call)
-    assert calls >= 7
+def test_where_one_call_fails_all_is_as_it_was(folder, before, call, calls):
+    count = count_calls(folder, call)
+    assert count >= 7
     put_back(folder, before)
-    for number in range(1, calls + 1):
+    for number in chosen(calls, 1, count):
         process = start(folder, "-e", f"inject={call}:error=EIO:when={number}")
         assert process.returncode == 1, process.stderr
         assert re.fullmatch(r".*: must be writable, got Input/output error\n", process.stdout)
-        assert is_old(folder, before), f"{call} {number} of {calls} left {listing(folder)}"
+        assert is_old(folder, before), f"{call} {number} of {count} left {listing(folder)}"
 
 
+@CALLS
 @pytest.mark.parametrize("before", [3])
 @pytest.mark.parametrize("name", ["SIGTERM", "SIGINT", "SIGHUP"])
-def test_a_signal_between_renames_waits_for_the_last(folder, before, name):
-    calls = count_calls(folder, "rename")
-    for number in range(2, calls + 1):
+def test_a_signal_between_renames_waits_for_the_last(folder, before, name, calls):
+    for number in chosen(calls, 2, count_calls(folder, "rename")):
         put_back(folder, before)
         process = start(folder, "-e", f"inject=rename:signal={name}:when={number}")
         # Of strace, which ends as its process does.
@@ -109,11 +112,14 @@ def test_a_signal_between_renames_waits_for_the_last(folder, before, name):
         assert is_new(folder), f"{name} at rename {number} left {listing(folder)}"
 
 
+@CALLS
 @BEFORE
-def test_what_a_kill_between_renames_left_is_taken_back_by_the_next_that_writes(folder, before):
-    calls = count_calls(folder, "rename")
+def test_what_a_kill_between_renames_left_is_taken_back_by_the_next_that_writes(
+    folder, before, calls
+):
+    numbers = chosen(calls, 1, count_calls(folder, "rename"))
     torn = 0
-    for number in range(1, calls + 1):
+    for number in numbers:
         put_back(folder, before)
         start(folder, "-e", f"inject=rename:signal=SIGKILL:when={number}")
         names = [name for name in listing(folder) if name in NAMES]
@@ -125,7 +131,7 @@ def test_what_a_kill_between_renames_left_is_taken_back_by_the_next_that_writes(
         assert len({(folder / name).read_text() for name in left}) <= 1
         write(folder)
         assert is_new(folder)
-    assert torn >= 5
+    assert torn >= (5 if calls == "all" else 1)
 
 
 def test_names_in_several_folders_are_taken_back_too(tmp_path):
@@ -196,6 +202,11 @@ def test_without_hard_links_what_stood_there_is_copied(tmp_path, monkeypatch):
     with pytest.raises(OutputError, match="must be writable, got Input/output error"):
         write(tmp_path)
     assert is_old(tmp_path, 6)
+
+
+def chosen(calls, first, last):
+    """Numbers of the calls that are disturbed."""
+    return range(first, last + 1) if calls == "all" else [first, (first + last) // 2, last]
 
 
 def count_calls(folder, call):

@@ -57,6 +57,21 @@ def test_second_process_finds_what_the_first_compiled(tmp_path):
     assert first[0].startswith(str(tmp_path))
 
 
+@pytest.fixture(scope="module")
+def compiled_once(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("compiled")
+    run(folder)
+    return folder
+
+
+@pytest.fixture
+def filled(compiled_once, tmp_path):
+    """A cache that holds what `SCRIPT` needs, and the folder of this version in it."""
+    shutil.copytree(compiled_once, tmp_path, dirs_exist_ok=True)
+    (folder,) = tmp_path.glob("kernels-*")
+    return folder
+
+
 def check_that_nothing_is_kept(result, warning):
     assert result.stdout.split() == ["None", "False", "False", "0"]
     assert result.stderr.count("RuntimeWarning") == 1
@@ -82,17 +97,16 @@ def test_in_a_write_protected_folder_kernels_run_with_one_warning(tmp_path):
     check_that_nothing_is_kept(result, "kernel cache must be writable")
 
 
-def test_a_folder_that_root_filled_is_read_by_all(tmp_path):
+def test_a_folder_that_root_filled_is_read_by_all(tmp_path, filled):
     """As a container's users do what `skybake cache warm` left in its image."""
-    folder = Path(run(tmp_path).stdout.split()[0])
-    folder.chmod(0o555)
+    filled.chmod(0o555)
     bound = () if os.getuid() else UNPRIVILEGED
     result = run(tmp_path, wrapper=bound)
-    assert result.stdout.split() == [str(folder), "True", "True", "1"]
+    assert result.stdout.split() == [str(filled), "True", "True", "1"]
     assert result.stderr == ""
     missing = run(tmp_path, wrapper=bound, script=LARGER)
     assert missing.stderr.count("RuntimeWarning") == 1
-    assert f"{folder}: kernel cache must be writable" in missing.stderr
+    assert f"{filled}: kernel cache must be writable" in missing.stderr
 
 
 HOMELESS = """
@@ -173,7 +187,7 @@ def is_digested(path):
 def test_every_module_with_kernels_counts():
     package = Path(skybake.__file__).parent
     modules = [path for path in package.rglob("*.py") if "\n@kernel\n" in path.read_text()]
-    assert len(modules) > 10
+    assert package / "scattering" / "field.py" in modules
     assert [path for path in modules if not is_digested(path)] == []
     assert not is_digested(package / "baking" / "write.py")
 
@@ -197,16 +211,15 @@ while functions:
         called = getattr(value, "py_func", value)
         if inspect.isfunction(called) and called not in known:
             functions.add(called)
-print(len(set(compiled)), *sorted({inspect.getsourcefile(function) for function in known}))
+print(*sorted({inspect.getsourcefile(function) for function in known}))
 """
 
 
 def test_every_kernel_that_a_render_uses_counts(tmp_path):
     """With all that they call, whatever it is decorated with."""
     script = USED.replace("sys.argv[1]", repr(str(tmp_path / "sky.exr")))
-    count, *files = run(os.environ["SKYBAKE_CACHE_DIR"], script=script).stdout.split()
-    assert int(count) > 5
-    assert len(files) > 10
+    files = run(os.environ["SKYBAKE_CACHE_DIR"], script=script).stdout.split()
+    assert {"trace.py", "field.py"} <= {Path(file).name for file in files}
     assert [file for file in files if not is_digested(Path(file))] == []
 
 
@@ -232,18 +245,15 @@ def with_another_bit(whole):
     return whole[:middle] + bytes([whole[middle] ^ 1]) + whole[middle + 1 :]
 
 
-@pytest.mark.parametrize(
-    "damage", [lambda whole: b"", lambda whole: b"foreign", half, with_another_bit]
-)
-def test_a_damaged_kernel_is_compiled_anew(tmp_path, damage):
-    run(tmp_path)
-    path = next(tmp_path.rglob("fill_harmonics-*.kernel"))
+def test_a_damaged_kernel_is_compiled_anew(tmp_path, filled):
+    path = next(filled.rglob("fill_harmonics-*.kernel"))
     whole = path.read_bytes()
-    path.write_bytes(damage(whole))
-    result = run(tmp_path)
-    assert result.stdout.split()[1:] == ["True", "True", "0"]
-    assert result.stderr == ""
-    assert path.read_bytes() != damage(whole)
+    for damaged in (b"", b"foreign", half(whole), with_another_bit(whole)):
+        path.write_bytes(damaged)
+        result = run(tmp_path)
+        assert result.stdout.split()[1:] == ["True", "True", "0"]
+        assert result.stderr == ""
+        assert path.read_bytes() != damaged
     assert run(tmp_path).stdout.split()[-1] == "1"
 
 
@@ -331,10 +341,9 @@ def test_no_module_of_ours_unpickles():
     assert found == []
 
 
-def test_a_folder_that_others_may_write_to_is_not_used(tmp_path):
+def test_a_folder_that_others_may_write_to_is_not_used(tmp_path, filled):
     """Who can write there could have us run what they like."""
-    folder = Path(run(tmp_path).stdout.split()[0])
-    folder.chmod(0o777)
+    filled.chmod(0o777)
     result = run(tmp_path)
     check_that_nothing_is_kept(result, "writable for its owner only")
 
@@ -357,12 +366,11 @@ def test_folders_of_other_versions_go_when_they_are_unused_for_long(tmp_path):
     assert other.exists()
 
 
-def test_use_keeps_a_folder_from_going(tmp_path):
-    folder = Path(run(tmp_path).stdout.split()[0])
+def test_use_keeps_a_folder_from_going(tmp_path, filled):
     long_ago = time.time() - 31 * 86400
-    os.utime(folder, (long_ago, long_ago))
+    os.utime(filled, (long_ago, long_ago))
     run(tmp_path)
-    assert time.time() - folder.stat().st_mtime < 3600
+    assert time.time() - filled.stat().st_mtime < 3600
 
 
 def test_processes_that_are_all_cold_all_succeed(tmp_path):
@@ -375,7 +383,7 @@ def test_processes_that_are_all_cold_all_succeed(tmp_path):
             stderr=subprocess.PIPE,
             text=True,
         )
-        for _ in range(4)
+        for _ in range(2)
     ]
     for process in processes:
         output, errors = process.communicate(timeout=120)

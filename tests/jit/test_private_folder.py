@@ -171,6 +171,7 @@ def test_what_is_being_written_stays_when_the_folder_is_opened(tmp_path, writer)
     assert (tmp_path / writer[1]).exists()
 
 
+@pytest.mark.slow  # by the clock, which other load on the machine disturbs
 def test_opening_takes_less_than_a_millisecond(tmp_path):
     path = tmp_path / "kernels"
     open_private_folder(path)

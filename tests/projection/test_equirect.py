@@ -1,3 +1,4 @@
+import functools
 import math
 
 import numpy as np
@@ -9,10 +10,11 @@ from skybake.angles import zenith_azimuth
 from skybake.projection import equirect
 
 SUN_RADIUS = math.radians(0.2666)
-SIZES = [64, 256, 1024, 4096, 16384]
-ELEVATIONS = [-89.9, -45.0, -0.1, 0.0, 0.13, 5.0, 30.0, 60.0, 80.0, 87.0, 89.7, 89.95, 90.0]
+SIZES = [64, 1024, 16384]
+ELEVATIONS = [-89.9, -45.0, -0.1, 0.13, 5.0, 60.0, 87.0, 89.95, 90.0]
 
 
+@functools.cache
 def flux_on_map(width, elevation, bearing, radius=SUN_RADIUS):
     """Flux and its vertical component of an even disc of radiance 1, cells and texels."""
     height = width // 2
@@ -114,7 +116,7 @@ def test_disc_keeps_its_vertical_component_within_a_per_mille(width, elevation):
     assert vertical == pytest.approx(expected, rel=1.25e-3 if is_corner else 1e-3)
 
 
-@pytest.mark.parametrize("elevation", [-0.1, 5.0, 60.0, 89.9, 90.0])
+@pytest.mark.parametrize("elevation", [-0.1, 5.0, 90.0])
 @pytest.mark.parametrize("width", SIZES)
 def test_cells_of_a_disc_keep_the_integral_of_limb_darkening(width, elevation):
     """Of 1 - u (1 - mu), the root of whose distance from the limb is hard to integrate."""
