@@ -6,7 +6,7 @@ import pytest
 
 from skybake.errors import TooThickError
 from skybake.optics.delta_m import scale_medium
-from skybake.scattering.solver import MAX_DEPTH, check_depth
+from skybake.scattering.limits import MAX_DEPTH, check_medium
 from tests.truth import truth_medium
 
 
@@ -17,4 +17,4 @@ def test_a_medium_beyond_the_solvers_depth_is_refused():
     )
 
     with pytest.raises(TooThickError, match=rf"at most {MAX_DEPTH:g} .*got \d"):
-        check_depth(scale_medium(thick, 10))
+        check_medium(scale_medium(thick, 10))
