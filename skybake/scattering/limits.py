@@ -14,7 +14,7 @@ MAX_PEAK = 0.45
 """Share of the light that a forward peak may hold; Henyey and Greenstein's at asymmetry 0.948.
 Of larger ones the peak's restoration by depth leaves negative light beside the sun."""
 
-MAX_LAST_MOMENT = 0.07
+MAX_LAST_MOMENT = 0.05
 """Size of the last moment that stays. A backward peak, whose moments change sign from order to
 order, cannot be truncated: where its series ends in the midst the diffuse field swings below 0;
 Henyey and Greenstein's does so in twilight at asymmetry -0.85, where this moment is 0.10."""

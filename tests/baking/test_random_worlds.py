@@ -5,6 +5,7 @@ import math
 import warnings
 
 import numpy as np
+import pytest
 
 from skybake.errors import PresetWarning, SkybakeError
 from skybake.image.scene import Scene
