@@ -28,8 +28,8 @@ PHASES = (
 
 ASYMMETRY = (-0.75, 0.9)
 """What the solver holds without negative light, measured at optical depths of 0.3 and 3 and suns
-from 60 to -6 deg, and of random worlds: a backward peak cannot be truncated, and of a sharper forward peak more
-lies in what is truncated than single scattering restores."""
+from 60 to -6 deg: a backward peak cannot be truncated, and of a sharper forward peak more lies in
+what is truncated than single scattering restores."""
 
 MAX_DEVIATION = 0.01
 """By which the integral of a table may differ from 1; within it the table is normalised."""
