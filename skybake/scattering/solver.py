@@ -154,7 +154,7 @@ def _settle(
         if not np.isfinite(change).all() or (turn >= SURE_PASSES and change.max() > DIVERGED):
             break
         previous = float(change[:sunlit].max())
-    raise _no_convergence(MAX_COARSE_PASSES, COARSE_TOLERANCE, float(change.max()))
+    raise _no_convergence(turn + 1, COARSE_TOLERANCE, float(change.max()))
 
 
 def _relative(change: Array, state: Array, grid: Grid) -> Array:
@@ -167,8 +167,8 @@ def _relative(change: Array, state: Array, grid: Grid) -> Array:
 
 def _no_convergence(passes: int, tolerance: float, change: float) -> TooThickError:
     return TooThickError(
-        f"multiple scattering: must converge within {passes} passes to {tolerance:g}, "
-        f"got {change:.2g}"
+        f"multiple scattering: must converge to a relative change of {tolerance:g}, "
+        f"got {change:.2g} after {passes} passes"
     )
 
 
