@@ -50,7 +50,11 @@ class InputError(SkybakeError, ValueError):
     """A value or an input file is outside what skybake can work with."""
 
 
-class TooThickError(InputError):
+class UnsolvableError(InputError):
+    """All orders of scattering cannot be solved for in an atmosphere."""
+
+
+class TooThickError(UnsolvableError):
     """An atmosphere is optically too thick for all orders of scattering to be solved for."""
 
 

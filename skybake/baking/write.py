@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -19,14 +18,13 @@ from skybake.formats.spec import Attribute, MapSpec
 from skybake.formats.whole_files import WholeFiles
 from skybake.formats.writer import MapWriter, check_map_path, open_maps
 from skybake.image.light import Light, attributes_from_light, light_of_scene
-from skybake.image.picture import PREVIEW_WIDTH, SURVEY_ROWS, scene_ev, show_scene
+from skybake.image.picture import PREVIEW_WIDTH, scene_ev, show_scene
 from skybake.image.raster import Raster
 from skybake.image.recipe import preview_texts, recipe_attributes
 from skybake.image.scene import Scene
 from skybake.image.settings import MapSettings
 from skybake.jit.workers import Workers
 from skybake.preset import Planet, load_preset
-from skybake.projection.equirect import column_bearings, row_zeniths
 
 BAND_ROWS = 128
 HALF_LARGEST = 60000.0
@@ -223,13 +221,10 @@ def _pixel(scene: Scene, peak: float) -> Literal["half", "float"]:
         return "half" if encoding.pixel == "half" else "float"
     if "sky" not in scene.layer_names:
         return "half" if peak < HALF_LARGEST else "float"
-    zenith = row_zeniths(SURVEY_ROWS)[:, None]
-    azimuth = column_bearings(2 * SURVEY_ROWS)[None]
-    survey = scene.evaluate(zenith, azimuth, math.pi / SURVEY_ROWS)
     toward_sun = scene.evaluate(np.array([[scene.sun_zenith]]), np.zeros((1, 1)), 1e-9)
-    luminance = survey @ (scene.luminance / encoding.white_luminance)
+    luminance = scene.survey @ (scene.luminance / encoding.white_luminance)
     lit = luminance[luminance > 0.0]
-    largest = 1.1 * max(np.abs(survey).max(), np.abs(toward_sun).max()) + peak
+    largest = 1.1 * max(np.abs(scene.survey).max(), np.abs(toward_sun).max()) + peak
     # The survey's texels are coarser than the map's, so the bounds keep a margin.
     smallest = 0.5 * float(lit.min()) if lit.size else 1.0
     return "half" if largest < HALF_LARGEST and smallest >= HALF_SMALLEST else "float"

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from skybake.errors import SkybakeError, TooThickError
+from skybake.errors import SkybakeError, UnsolvableError
 
 
 def advised(error: SkybakeError) -> str:
     """Return an error's message, and which options help if there are any."""
-    if isinstance(error, TooThickError):
+    if isinstance(error, UnsolvableError):
         return f"{error}; use probe --method reference, or --method hillaire"
     return str(error)

@@ -9,15 +9,12 @@ from skybake.colour.exposure import auto_ev, luminance_from_ev
 from skybake.formats.preview import Show, display_values
 from skybake.image.layers import Pixels
 from skybake.image.raster import Raster
-from skybake.image.scene import Scene
+from skybake.image.scene import SURVEY_ROWS, Scene
 from skybake.image.settings import Encoding
 from skybake.projection import Projection
 from skybake.projection.chart import Canvas
 
 PREVIEW_WIDTH = 1024
-
-SURVEY_ROWS = 256
-"""Rows of the equirect map that the automatic exposure is computed from."""
 
 CodeValues = npt.NDArray[np.uint8]
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from skybake.colour.observer import xyz_weights
 from skybake.colour.space import find_colour_space, luminance_weights, rgb_from_xyz
+from skybake.errors import UnsolvableError
 from skybake.image.settings import MapSettings
 from skybake.image.stages import Stages
 from skybake.jit.arguments import flatten
@@ -17,10 +18,20 @@ from skybake.optics.medium import Array
 from skybake.optics.spectrum import star_spectrum
 from skybake.preset import Planet
 from skybake.projection.cells import Cells
+from skybake.projection.equirect import column_bearings, row_zeniths
 from skybake.sky.disc import Disc
 from skybake.sky.pixels import allocate_pixels, fill_directions
 from skybake.sky.sky import WAVELENGTHS, Sky
 from skybake.sky.table import FoldedTable
+
+SURVEY_ROWS = 256
+"""Rows of an equirect map by which the light of a scene is judged."""
+
+ROUNDING = 1e-6
+"""Of the brightest luminance, and of a white surface's in full sun `DARK`: what single precision
+and interpolation leave below 0 where there is no light."""
+
+DARK = 1e-10
 
 PROBE_ZENITHS = 192
 PROBE_AZIMUTHS = 256
@@ -107,6 +118,40 @@ class Scene:
         """The sky as a table of pixel values."""
         return self._stages.folded_table(self.sky, self.rgb_weights)
 
+    @cached_property
+    def survey(self) -> np.ndarray:
+        """Pixel values of a small equirect map of the sky, shape (SURVEY_ROWS, column, 3).
+
+        Raises
+        ------
+        UnsolvableError
+            If its luminance is negative beyond rounding, or not finite.
+        """
+        zenith = row_zeniths(SURVEY_ROWS)[:, None]
+        azimuth = column_bearings(2 * SURVEY_ROWS)[None]
+        survey = self._evaluate(zenith, azimuth, math.pi / SURVEY_ROWS)
+        with np.errstate(invalid="ignore"):
+            luminance = survey @ self.luminance
+        least, most = float(luminance.min()), float(luminance.max())
+        if not math.isfinite(most - least):
+            raise UnsolvableError(f"light: luminance must be finite, got {least + most}")
+        if least < -self._rounding(most):
+            raise UnsolvableError(
+                "light: luminance must be at least 0 beside a brightest one of "
+                f"{most:.3g} cd/m2, got {least:.3g}; the air is beyond what the method resolves"
+            )
+        return survey
+
+    @cached_property
+    def _is_rounded(self) -> bool:
+        """Whether luminances fall below 0 by rounding, as in the dark."""
+        return bool((self.survey @ self.luminance).min() < 0.0)
+
+    def _rounding(self, brightest: float) -> float:
+        """Luminance below which a negative one is none. [cd m⁻²]"""
+        white = float(self.xyz_weights[:, 1].sum()) / math.pi
+        return max(ROUNDING * brightest, DARK * white)
+
     @property
     def layer_names(self) -> tuple[str, ...]:
         """Layers that a map of the scene holds."""
@@ -150,7 +195,19 @@ class Scene:
         return float(2.0 * math.pi * (flux * luminance).sum())
 
     def evaluate(self, zenith: Array, azimuth: Array, footprint: Array | float) -> np.ndarray:
-        """Pixel values of the sky, see `fill_directions`, shape (row, column, 3)."""
+        """Pixel values of the sky, see `fill_directions`, shape (row, column, 3).
+
+        Raises
+        ------
+        UnsolvableError
+            As of `survey`.
+        """
+        pixels = self._evaluate(zenith, azimuth, footprint)
+        if self._is_rounded:
+            pixels[pixels @ self.luminance < 0.0] = 0.0
+        return pixels
+
+    def _evaluate(self, zenith: Array, azimuth: Array, footprint: Array | float) -> np.ndarray:
         rows, columns = np.broadcast_shapes(zenith.shape, azimuth.shape)
         out = np.empty((rows, columns, 3), np.float32)
         extent = np.atleast_2d(np.asarray(footprint, dtype=float))

@@ -22,7 +22,7 @@ from skybake.optics.medium import (
 from skybake.optics.spectrum import limb_darkening, star_irradiance, star_spectrum
 from skybake.preset import Absorber, Gas, Planet
 from skybake.scattering.grid import ORDER
-from skybake.scattering.solver import MAX_DEPTH, check_depth
+from skybake.scattering.limits import check_medium
 from skybake.sky.sky import WAVELENGTHS
 
 SUMMARY_WAVELENGTHS = (450.0, 550.0, 650.0)
@@ -135,11 +135,8 @@ def _try_all(planet: Planet) -> Medium:
 
 
 def _refusal(medium: Medium) -> str | None:
-    # Scaling only reduces the depth, and most atmospheres are thin enough without it.
-    if vertical_optical_depth(medium).sum(axis=0).max() <= MAX_DEPTH:
-        return None
     try:
-        check_depth(scale_medium(medium, ORDER))
+        check_medium(scale_medium(medium, ORDER))
     except InputError as error:
         return str(error)
     return None

@@ -49,8 +49,8 @@ def build_atmosphere(medium: Medium, method: str, workers: Workers = ALL_CPUS) -
 
     Raises
     ------
-    TooThickError
-        If all orders are requested and the atmosphere is optically too thick.
+    UnsolvableError
+        If all orders were asked for, and the atmosphere is too thick or its peaks too strong.
     """
     dark = dark_atmosphere(medium, method, workers)
     solve = solve_field if method == "full" else close_field

@@ -25,8 +25,8 @@ from skybake.scattering.grid import (
     empty_field,
     no_field,
     project,
-    thickest_depth,
 )
+from skybake.scattering.limits import check_medium
 from skybake.scattering.multiple import NEGLIGIBLE, add_diffuse, allocate_scratch, side_by_side
 from skybake.scattering.ray import trace_rays
 from skybake.scattering.tables import Atmosphere
@@ -50,9 +50,10 @@ MAX_COARSE_PASSES = 400
 COARSE_ORDER = 3
 """Highest harmonic of the field in which light is followed through further scatterings."""
 
-MAX_DEPTH = 30.0
-"""Vertical optical depth up to which the solution is good: where nothing is absorbed, 2 % of
-the light that reaches the ground at depth 10, 6 % at depth 30."""
+DIVERGED = 0.5
+"""Relative change that no iteration which will converge shows after `SURE_PASSES`."""
+
+SURE_PASSES = 40
 
 ARC = math.radians(2.0)
 FIRST_ARC = math.radians(1.5)
@@ -76,7 +77,9 @@ def solve_field(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> DiffuseF
     Raises
     ------
     TooThickError
-        If the iteration does not converge, in an atmosphere that is optically too thick.
+        If the atmosphere is optically too thick, or the iteration does not converge.
+    UnsolvableError
+        If a phase function has a peak that is too strong.
 
     Notes
     -----
@@ -93,7 +96,7 @@ def solve_field(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> DiffuseF
     particle transport calculations", Prog. Nucl. Energy 40, 2002, section II.
     """
     scaled = atmosphere.scaled
-    check_depth(scaled)
+    check_medium(scaled)
     grid = build_grid(scaled)
     coarse_grid = grid._replace(azimuth=azimuths(COARSE_ORDER))
     traced = _trace_grid(scaled, grid)
@@ -123,22 +126,6 @@ def solve_field(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> DiffuseF
     raise _no_convergence(MAX_PASSES, TOLERANCE, float(change.max()))
 
 
-def check_depth(scaled: ScaledMedium) -> None:
-    """Refuse a medium that is too thick to be solved for.
-
-    Raises
-    ------
-    TooThickError
-        If its vertical optical depth is above `MAX_DEPTH` at any wavelength.
-    """
-    depth = thickest_depth(scaled.medium)
-    if depth > MAX_DEPTH:
-        raise TooThickError(
-            "multiple scattering: optical depth of the atmosphere without forward peaks must be "
-            f"at most {MAX_DEPTH:g} at every wavelength, got {depth:.3g}"
-        )
-
-
 def _settle(
     scaled: ScaledMedium,
     new: DiffuseField,
@@ -164,10 +151,10 @@ def _settle(
         # In a thick atmosphere a small change is not a small error.
         if turn > 0 and change.max() < max(COARSE_TOLERANCE * (1.0 - left) / left, LEAST_CHANGE):
             return _field(new, state)
-        if not np.isfinite(change).all():
+        if not np.isfinite(change).all() or (turn >= SURE_PASSES and change.max() > DIVERGED):
             break
         previous = float(change[:sunlit].max())
-    raise _no_convergence(MAX_COARSE_PASSES, COARSE_TOLERANCE, float(change.max()))
+    raise _no_convergence(turn + 1, COARSE_TOLERANCE, float(change.max()))
 
 
 def _relative(change: Array, state: Array, grid: Grid) -> Array:
@@ -180,8 +167,8 @@ def _relative(change: Array, state: Array, grid: Grid) -> Array:
 
 def _no_convergence(passes: int, tolerance: float, change: float) -> TooThickError:
     return TooThickError(
-        f"multiple scattering: must converge within {passes} passes to {tolerance:g}, "
-        f"got {change:.2g}"
+        f"multiple scattering: must converge to a relative change of {tolerance:g}, "
+        f"got {change:.2g} after {passes} passes"
     )
 
 

@@ -11,6 +11,8 @@ from skybake.optics.medium import build_medium
 from skybake.preset import load_preset, preset_names
 from skybake.scattering.atmosphere import build_atmosphere
 from skybake.sky.sky import WAVELENGTHS
+from tests.preset.files import PHASE, write
+from tests.truth import henyey_greenstein
 
 
 def constituents(summary):
@@ -101,3 +103,14 @@ def test_the_figures_of_every_preset_are_told_in_lines_of_numbers(name):
     assert "nan" not in text
     assert "inf" not in text.lower().replace("infra", "")
     assert all(len(line) <= 100 or line.startswith("data quality") for line in text.splitlines())
+
+
+def test_a_table_with_a_peak_beyond_truncation_is_told_to_be_no_rendering(tmp_path):
+    angle = np.concatenate([np.linspace(0.0, 20.0, 2001), np.linspace(20.1, 180.0, 1600)])
+    phase = henyey_greenstein(np.radians(angle), 0.97)
+    rows = "\n".join(f"{a:.4f},{p:.8g}" for a, p in zip(angle, phase, strict=True))
+    (tmp_path / "peak.csv").write_text(f"angle_deg,550\n{rows}\n", encoding="utf-8")
+    planet = load_preset(write(tmp_path, PHASE, '{ kind = "tabulated", table = "peak.csv" }'))
+    refusal = summarise(planet).refusal
+    assert "forward peak of a phase function" in refusal
+    assert f"will not render: {refusal}" in summary_text(planet, summarise(planet))

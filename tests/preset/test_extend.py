@@ -150,7 +150,7 @@ def test_a_fault_in_the_extended_file_is_named_as_its_own(tmp_path):
     assert fault(write(tmp_path, "own", 'extends = "base.toml"')).startswith(f"{base}: not valid")
     base = write(tmp_path, "base", MINIMAL.replace("0.7", "1.7"))
     own = write(tmp_path, "own", 'extends = "base.toml"\nground.albedo = 0.5')
-    assert fault(own) == f"{base}: constituents.haze.phase.asymmetry: must be at most 0.99, got 1.7"
+    assert fault(own) == f"{base}: constituents.haze.phase.asymmetry: must be at most 0.9, got 1.7"
 
 
 def test_a_fault_is_named_where_the_faulty_value_was_written(tmp_path):

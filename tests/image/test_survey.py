@@ -1,0 +1,60 @@
+"""Light that cannot be is refused before a file is written."""
+
+import math
+
+import numpy as np
+import pytest
+
+from skybake.errors import UnsolvableError
+from skybake.image.scene import Scene
+from skybake.image.settings import map_settings
+from skybake.image.stages import Stages
+from skybake.preset import load_preset
+from tests.baking.maps import bake_map
+
+PRESET = "earth-hillaire2020"
+
+
+@pytest.fixture
+def spoil(monkeypatch):
+    """Pass the table of every sky through a function of its values."""
+    fold = Stages.folded_table
+
+    def spoil(change):
+        def folded(self, sky, rgb_weights):
+            table = fold(self, sky, rgb_weights)
+            return table._replace(values=change(table.values))
+
+        monkeypatch.setattr(Stages, "folded_table", folded)
+
+    return spoil
+
+
+def scene():
+    settings = map_settings(sun_elevation=0.3, units="nits", method="hillaire")
+    return Scene(load_preset(PRESET), settings)
+
+
+def zenith(made):
+    return made.evaluate(np.zeros((1, 1)), np.zeros((1, 1)), 1e-9)[0, 0]
+
+
+@pytest.mark.parametrize(
+    ("factor", "fault"), [(-1.0, r"luminance must be at least 0 .*got -\d"), (math.nan, "finite")]
+)
+def test_negative_or_undefined_light_is_refused_in_a_line_without_a_file(
+    tmp_path, spoil, factor, fault
+):
+    spoil(lambda values: values * np.float32(factor))
+    with pytest.raises(UnsolvableError, match=fault) as caught:
+        bake_map(tmp_path / "a.exr", PRESET, method="hillaire")
+    assert len(str(caught.value).splitlines()) == 1
+    assert not list(tmp_path.iterdir())
+
+
+def test_light_below_0_by_rounding_is_none(spoil):
+    lit = zenith(scene())
+    spoil(lambda values: values * np.float32(-1e-16))
+    assert (lit > 0.0).all()
+    np.testing.assert_array_equal(zenith(scene()), 0.0)
+    assert scene().sky_illuminance() == 0.0
