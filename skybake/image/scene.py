@@ -22,6 +22,7 @@ from skybake.projection.equirect import column_bearings, row_zeniths
 from skybake.sky.disc import Disc
 from skybake.sky.pixels import allocate_pixels, fill_directions
 from skybake.sky.sky import WAVELENGTHS, Sky
+from skybake.sky.spectral_table import radiance_at_nodes
 from skybake.sky.table import FoldedTable
 
 SURVEY_ROWS = 256
@@ -31,7 +32,11 @@ ROUNDING = 1e-6
 """Of the brightest luminance, and of a white surface's in full sun `DARK`: what single precision
 and interpolation leave below 0 where there is no light."""
 
-DARK = 1e-10
+DARK = 1e-9
+"""Of a white surface in full sun: on Earth a fifth of the sky's luminance in a dark night."""
+
+UNDERSHOOT = 0.01
+"""Of the brightest luminance: the most that interpolation may be below 0; it is 0 then."""
 
 PROBE_ZENITHS = 192
 PROBE_AZIMUTHS = 256
@@ -113,12 +118,12 @@ class Scene:
         weights: Array = self.xyz_weights @ to_rgb / encoding.white_luminance
         return weights
 
-    @cached_property
+    @property
     def table(self) -> FoldedTable:
         """The sky as a table of pixel values."""
-        return self._stages.folded_table(self.sky, self.rgb_weights)
+        return self._surveyed[0]
 
-    @cached_property
+    @property
     def survey(self) -> np.ndarray:
         """Pixel values of a small equirect map of the sky, shape (SURVEY_ROWS, column, 3).
 
@@ -127,20 +132,47 @@ class Scene:
         UnsolvableError
             If its luminance is negative beyond rounding, or not finite.
         """
-        zenith = row_zeniths(SURVEY_ROWS)[:, None]
-        azimuth = column_bearings(2 * SURVEY_ROWS)[None]
-        survey = self._evaluate(zenith, azimuth, math.pi / SURVEY_ROWS)
-        with np.errstate(invalid="ignore"):
-            luminance = survey @ self.luminance
-        least, most = float(luminance.min()), float(luminance.max())
-        if not math.isfinite(most - least):
-            raise UnsolvableError(f"light: luminance must be finite, got {least + most}")
+        return self._surveyed[1]
+
+    @cached_property
+    def _surveyed(self) -> tuple[FoldedTable, np.ndarray]:
+        """The table and its survey; where few azimuths ring at a sharp shadow, of all of them."""
+        table = self._stages.folded_table(self.sky, self.rgb_weights)
+        survey = self._survey(table)
+        least, most = self._range(survey @ self.luminance)
+        if least < -self._rounding(most):
+            table = self._stages.folded_table(self.sky, self.rgb_weights, finely=True)
+            survey = self._survey(table)
+            least, most = self._range(survey @ self.luminance)
+            # Cubics between rays that are sound swing a little below 0 beside a shadow's edge.
+            if self._has_sound_rays() and least > -UNDERSHOOT * most:
+                least = 0.0
         if least < -self._rounding(most):
             raise UnsolvableError(
                 "light: luminance must be at least 0 beside a brightest one of "
-                f"{most:.3g} cd/m2, got {least:.3g}; the air is beyond what the method resolves"
+                f"{most:.3g} cd/m2, got {least:.3g}; the atmosphere is beyond what the method "
+                "resolves"
             )
-        return survey
+        return table, survey
+
+    def _survey(self, table: FoldedTable) -> np.ndarray:
+        zenith = row_zeniths(SURVEY_ROWS)[:, None]
+        azimuth = column_bearings(2 * SURVEY_ROWS)[None]
+        return self._evaluate(table, zenith, azimuth, math.pi / SURVEY_ROWS)
+
+    def _has_sound_rays(self) -> bool:
+        """Whether the rays that the table interpolates between bring no negative light."""
+        table = self._stages.spectral_table(self.sky, finely=True)
+        radiance = radiance_at_nodes(table, self.sky.skylight.phase)
+        least, most = self._range(radiance @ self.xyz_weights[:, 1])
+        return least >= -self._rounding(most)
+
+    def _range(self, luminance: Array) -> tuple[float, float]:
+        """Return the least and the greatest luminance. [cd m⁻²]"""
+        least, most = float(luminance.min()), float(luminance.max())
+        if not math.isfinite(least) or not math.isfinite(most):
+            raise UnsolvableError(f"light: luminance must be finite, got {least + most}")
+        return least, most
 
     @cached_property
     def _is_rounded(self) -> bool:
@@ -202,19 +234,21 @@ class Scene:
         UnsolvableError
             As of `survey`.
         """
-        pixels = self._evaluate(zenith, azimuth, footprint)
+        pixels = self._evaluate(self.table, zenith, azimuth, footprint)
         if self._is_rounded:
             pixels[pixels @ self.luminance < 0.0] = 0.0
         return pixels
 
-    def _evaluate(self, zenith: Array, azimuth: Array, footprint: Array | float) -> np.ndarray:
+    def _evaluate(
+        self, table: FoldedTable, zenith: Array, azimuth: Array, footprint: Array | float
+    ) -> np.ndarray:
         rows, columns = np.broadcast_shapes(zenith.shape, azimuth.shape)
         out = np.empty((rows, columns, 3), np.float32)
         extent = np.atleast_2d(np.asarray(footprint, dtype=float))
-        pixels = flatten(self.table), flatten(zenith), flatten(azimuth), flatten(extent)
+        pixels = flatten(table), flatten(zenith), flatten(azimuth), flatten(extent)
 
         def work(first: int, last: int) -> None:
-            scratch = allocate_pixels(self.table, columns)
+            scratch = allocate_pixels(table, columns)
             fill_directions(*pixels, first, last, scratch, out[first:last])
 
         self.workers.run_rows(rows, work, chunk=128 // self.workers.shares(8))

@@ -11,11 +11,11 @@ from skybake.sky.table import FoldedTable
 class Stages:
     """Computes each stage when it is needed, and keeps none."""
 
-    def spectral_table(self, sky: Sky) -> SpectralTable:
+    def spectral_table(self, sky: Sky, *, finely: bool = False) -> SpectralTable:
         """Light around the observer in all wavelengths; the one stage that traces rays."""
-        return sky.skylight.spectral_table(sky.source)
+        return sky.skylight.spectral_table(sky.source, finely=finely)
 
-    def folded_table(self, sky: Sky, rgb_weights: Array) -> FoldedTable:
+    def folded_table(self, sky: Sky, rgb_weights: Array, *, finely: bool = False) -> FoldedTable:
         """Light around the observer as pixel values.
 
         Parameters
@@ -24,5 +24,7 @@ class Stages:
             What is seen.
         rgb_weights : ndarray of float64, shape (wavelength, 3)
             Pixel values are the radiance per unit irradiance times these.
+        finely : bool, optional
+            As of `skybake.sky.spectral_table.table_geometry`.
         """
-        return fold_table(self.spectral_table(sky), sky.skylight.basis, rgb_weights)
+        return fold_table(self.spectral_table(sky, finely=finely), sky.skylight.basis, rgb_weights)

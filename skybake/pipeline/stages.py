@@ -10,7 +10,7 @@ from skybake.sky.sky import Sky
 from skybake.sky.spectral_table import SpectralTable
 from skybake.sky.table import FoldedTable
 
-TableKey = tuple[str, str, float, float]
+TableKey = tuple[str, str, float, float, bool]
 
 
 class KeptStages(Stages):
@@ -29,18 +29,18 @@ class KeptStages(Stages):
         self._spectral: Kept[TableKey, SpectralTable] = Kept(most)
         self._folded: Kept[tuple[TableKey, bytes], FoldedTable] = Kept(2 * most)
 
-    def spectral_table(self, sky: Sky) -> SpectralTable:
+    def spectral_table(self, sky: Sky, *, finely: bool = False) -> SpectralTable:
         """Light around the observer in all wavelengths."""
         make = super().spectral_table
-        return self._spectral.get(_table_key(sky), lambda: make(sky))
+        return self._spectral.get(_table_key(sky, finely), lambda: make(sky, finely=finely))
 
-    def folded_table(self, sky: Sky, rgb_weights: Array) -> FoldedTable:
+    def folded_table(self, sky: Sky, rgb_weights: Array, *, finely: bool = False) -> FoldedTable:
         """Light around the observer as pixel values."""
         make = super().folded_table
-        key = _table_key(sky), rgb_weights.tobytes()
-        return self._folded.get(key, lambda: make(sky, rgb_weights))
+        key = _table_key(sky, finely), rgb_weights.tobytes()
+        return self._folded.get(key, lambda: make(sky, rgb_weights, finely=finely))
 
 
-def _table_key(sky: Sky) -> TableKey:
+def _table_key(sky: Sky, finely: bool) -> TableKey:
     key = atmosphere_key(sky.medium, sky.table_method)
-    return key, sky.method, sky.altitude, sky.sun_elevation
+    return key, sky.method, sky.altitude, sky.sun_elevation, finely

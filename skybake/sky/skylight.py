@@ -157,10 +157,20 @@ class Skylight:
         shape = *shape, ends.shape[-1], count
         return Segments(radiance.reshape(shape), transmittance.reshape(shape))
 
-    def spectral_table(self, source: Source) -> SpectralTable:
-        """Trace the rays from which pixels get the light of one source."""
+    def spectral_table(self, source: Source, *, finely: bool = False) -> SpectralTable:
+        """Trace the rays from which pixels get the light of one source.
+
+        Parameters
+        ----------
+        source : Source
+            What lights the atmosphere.
+        finely : bool, optional
+            As of `table_geometry`.
+        """
         medium = self.atmosphere.medium
-        geometry = table_geometry(self.radius, medium.r_bottom, medium.r_top, source.zenith)
+        geometry = table_geometry(
+            self.radius, medium.r_bottom, medium.r_top, source.zenith, finely=finely
+        )
         return SpectralTable(
             geometry, self._light(source, geometry.mu.ravel(), geometry.nu.ravel())
         )

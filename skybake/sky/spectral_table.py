@@ -9,6 +9,7 @@ import numpy as np
 
 from skybake.angles import cosine_between
 from skybake.optics.medium import Array
+from skybake.optics.phase import eval_phase
 from skybake.optics.phase_basis import PhaseBasis, pad_basis
 from skybake.scattering.ray import RayLight
 from skybake.sky.table import (
@@ -45,7 +46,9 @@ class TableGeometry:
     nu: Array
 
 
-def table_geometry(r: float, r_bottom: float, r_top: float, source_zenith: float) -> TableGeometry:
+def table_geometry(
+    r: float, r_bottom: float, r_top: float, source_zenith: float, *, finely: bool = False
+) -> TableGeometry:
     """Choose the nodes of a table.
 
     Parameters
@@ -54,11 +57,13 @@ def table_geometry(r: float, r_bottom: float, r_top: float, source_zenith: float
         Radii of the observer, the ground and the top of the atmosphere. [km]
     source_zenith : float
         Zenith angle of the source. [rad]
+    finely : bool, optional
+        Trace rays at all azimuths of the table, also where few determine the others.
     """
     first, horizon = horizon_angles(r, r_bottom, r_top)
     azimuths = AZIMUTHS_FROM_SPACE
     if first == 0.0:
-        azimuths = ray_azimuths(math.pi / 2.0 - source_zenith, horizon)
+        azimuths = AZIMUTHS if finely else ray_azimuths(math.pi / 2.0 - source_zenith, horizon)
     zenith, phi = table_directions(source_zenith, first, horizon, azimuths)
     theta = np.broadcast_to(zenith[:, :, None], phi.shape)
     mu = np.cos(theta)
@@ -81,6 +86,21 @@ class SpectralTable:
 
     geometry: TableGeometry
     light: RayLight
+
+
+def radiance_at_nodes(table: SpectralTable, phase: Array) -> Array:
+    """Radiance along the rays of a table per unit irradiance, shape (node, wavelength). [sr⁻¹]
+
+    Parameters
+    ----------
+    table : SpectralTable
+        The light.
+    phase : ndarray of float64, shape (phase function, angle, wavelength)
+        Phase functions that belong to `table.light.single`, see `Skylight.phase`. [sr⁻¹]
+    """
+    at_nodes = eval_phase(phase, table.geometry.nu.ravel())
+    radiance: Array = (table.light.single * at_nodes).sum(axis=1) + table.light.diffuse
+    return radiance
 
 
 def fold_table(table: SpectralTable, basis: PhaseBasis, rgb_weights: Array) -> FoldedTable:

@@ -1,16 +1,19 @@
 """Light that cannot be is refused before a file is written."""
 
 import math
+import warnings
 
 import numpy as np
 import pytest
 
-from skybake.errors import UnsolvableError
+from skybake.errors import PresetWarning, UnsolvableError
 from skybake.image.scene import Scene
 from skybake.image.settings import map_settings
 from skybake.image.stages import Stages
 from skybake.preset import load_preset
+from skybake.preset.toml import toml_text
 from tests.baking.maps import bake_map
+from tests.baking.random_worlds import random_world
 
 PRESET = "earth-hillaire2020"
 
@@ -21,8 +24,8 @@ def spoil(monkeypatch):
     fold = Stages.folded_table
 
     def spoil(change):
-        def folded(self, sky, rgb_weights):
-            table = fold(self, sky, rgb_weights)
+        def folded(self, sky, rgb_weights, *, finely=False):
+            table = fold(self, sky, rgb_weights, finely=finely)
             return table._replace(values=change(table.values))
 
         monkeypatch.setattr(Stages, "folded_table", folded)
@@ -58,3 +61,20 @@ def test_light_below_0_by_rounding_is_none(spoil):
     assert (lit > 0.0).all()
     np.testing.assert_array_equal(zenith(scene()), 0.0)
     assert scene().sky_illuminance() == 0.0
+
+
+@pytest.mark.parametrize("seed", [16, 24, 116])
+def test_a_sharp_shadow_in_thin_air_leaves_light_that_is_not_negative(tmp_path, seed):
+    """Few azimuths ring there, and cubics swing below 0 between rays that are not."""
+    path = tmp_path / "world.toml"
+    path.write_text(toml_text(random_world(seed)), encoding="utf-8")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PresetWarning)
+        planet = load_preset(path)
+    settings = map_settings(sun_elevation=math.radians(-6.0), colorspace="xyz", units="nits")
+    made = Scene(planet, settings)
+    assert (made.survey[..., 1].min() < 0.0) == (seed != 116)
+    zenith = np.linspace(0.0, math.pi, 180)[:, None]
+    shown = made.evaluate(zenith, np.linspace(0.0, math.pi, 90)[None], 1e-9)[..., 1]
+    assert shown.min() >= 0.0
+    assert made.sky_illuminance() > 0.0
