@@ -1,6 +1,7 @@
 """Settings of all tests."""
 
 import os
+import signal
 import subprocess
 import tempfile
 from pathlib import Path
@@ -16,6 +17,11 @@ os.environ.setdefault(
 # Kernels compile within the first example, and a run must not depend on luck.
 settings.register_profile("skybake", deadline=None, derandomize=True, database=None)
 settings.load_profile("skybake")
+
+
+# Processes of tests inherit an ignored interrupt, as of a shell's background job, and none other.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_addoption(parser):

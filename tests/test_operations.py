@@ -79,7 +79,9 @@ def test_a_sky_takes_few_rays(tmp_path, work, preset, sun, altitude, fans, sampl
     assert sum(work[name] for name in ("trace", "add_single_scattering", "add_diffuse")) < 150
 
 
-@pytest.mark.parametrize(("preset", "scattered"), [("earth", 4900), ("mars", 7600)])
+@pytest.mark.parametrize(
+    ("preset", "scattered"), [("earth", 4900), pytest.param("mars", 7600, marks=pytest.mark.slow)]
+)
 def test_a_solution_takes_few_passes(work, preset, scattered):
     build_atmosphere(build_medium(skybake.load_preset(preset), WAVELENGTHS), "full")
     assert work["fans scattered"] <= 1.1 * scattered

@@ -27,7 +27,7 @@ def hints(thing):
                 found[name] = typing.get_type_hints(member)
         elif name == "__init__" and is_ours(member) and not issubclass(thing, HANDED_ON):
             found[name] = typing.get_type_hints(member)
-        elif isinstance(member, property):
+        elif isinstance(member, property) and not issubclass(thing, HANDED_ON):
             found[name] = typing.get_type_hints(member.fget)
     return found
 

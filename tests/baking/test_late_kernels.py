@@ -6,6 +6,8 @@ import sys
 from collections import Counter
 from pathlib import Path
 
+import pytest
+
 from skybake.baking.late_kernels import KERNELS
 
 
@@ -22,6 +24,7 @@ def render(folder, **environment):
     )
 
 
+@pytest.mark.slow
 def test_first_render_compiles_each_kernel_for_one_set_of_types(tmp_path):
     """Two sets would mean that the other process has compiled for nothing."""
     result = render(tmp_path, PYTHONPATH=str(Path.cwd()))

@@ -20,7 +20,7 @@ ELEVATIONS = (60.0, 5.0, -6.0)
 
 QUICK = (0, 5, 7)
 """Thin ones, which are solved in a second or two: with asymmetries at both ends of their range, in
-the planet's shadow, and two whose light would be negative at the edge of that shadow."""
+the planet's shadow."""
 
 
 def sky(planet, elevation):

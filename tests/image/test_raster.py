@@ -72,7 +72,7 @@ def reduced(pixels, step):
     return pixels.reshape(rows, step, columns, step, 3).mean(axis=(1, 3))
 
 
-@pytest.mark.parametrize("roll", [0.0, 0.5])
+@pytest.mark.parametrize("roll", [pytest.param(0.0, marks=pytest.mark.slow), 0.5])
 @pytest.mark.parametrize("sun", [-15.0, 20.0])
 def test_the_limb_in_a_picture_from_orbit_is_smooth(roll, sun):
     """Each pixel is the mean of the 8 by 8 that a finer picture has in its place.

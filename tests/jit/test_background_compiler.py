@@ -15,6 +15,8 @@ INTRUDERS = ("llvmlite", "numba", "numpy", "runpy", "click", "skybake", "json")
 
 RENDER = """
 import sys
+
+import pytest
 from skybake.__main__ import run
 run()
 """
@@ -35,6 +37,7 @@ def start(folder, *arguments, code=RENDER, **environment):
 FIRST_RENDER = ("render", "--size", "64x32", "-o", "sky.exr", "-q")
 
 
+@pytest.mark.slow
 def test_no_process_of_a_first_render_runs_a_file_of_the_working_folder(tmp_path):
     for name in INTRUDERS:
         code = f"import pathlib; pathlib.Path(__file__).with_name('{name}.ran').touch()\n"
@@ -127,6 +130,7 @@ def test_it_ends_with_its_parent_though_that_is_killed(tmp_path):
     assert wait_until(lambda: not is_running(helper), 5.0)
 
 
+@pytest.mark.slow
 def test_a_killed_first_render_leaves_no_process_and_the_next_run_no_leftovers(tmp_path):
     process = start(tmp_path, *FIRST_RENDER)
     children = Path(f"/proc/{process.pid}/task/{process.pid}/children")

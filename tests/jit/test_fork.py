@@ -132,6 +132,7 @@ def test_a_child_that_is_forked_while_a_kernel_compiles_compiles_its_own(tmp_pat
     assert (result.returncode, result.stdout, result.stderr) == (0, "(9.0, 27.0)\n", "")
 
 
+@pytest.mark.slow
 def test_a_child_that_is_forked_while_an_atmosphere_is_built_builds_its_own(tmp_path, cold):
     result = run(WHILE_AN_ATMOSPHERE_IS_BUILT, tmp_path, **cold)
     assert (result.returncode, result.stdout, result.stderr) == (0, "True\n", "")

@@ -123,6 +123,7 @@ def test_sampling_the_first_order_gives_its_quadrature():
     assert np.all(np.abs(mean - exact) < 3.5 * stderr + 1e-5 * exact)
 
 
+@pytest.mark.slow
 def test_orders_add_up():
     medium = at_one_wavelength(truth_medium("EARTH_HAZE"), 2)
     view = (np.radians(10.0), np.radians([40.0, 80.0]), np.radians([30.0, 150.0]))
@@ -136,6 +137,7 @@ def test_orders_add_up():
     assert np.all(np.abs(sum(mean for mean, _ in parts) - whole) < 3.5 * noise)
 
 
+@pytest.mark.slow
 def test_the_standard_error_is_the_scatter_between_seeds():
     medium = at_one_wavelength(truth_medium("EARTH_A"), 1)
     view = (np.radians(5.0), np.radians([5.0, 20.0, 60.0, 85.0, 88.0, 95.0]), np.radians(120.0))

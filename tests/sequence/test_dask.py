@@ -78,6 +78,7 @@ def alone(tmp_path_factory):
     return made
 
 
+@pytest.mark.slow
 def test_a_cluster_makes_the_same_bytes(tmp_path, cluster, alone):
     arguments = ("--frames", "1-12", "--contact-sheet", "s.png")
     assert bake(tmp_path, *arguments, "--dask", cluster) == ""

@@ -41,6 +41,7 @@ def killed(folder, more, delay):
     return process.returncode
 
 
+@pytest.mark.slow
 def test_a_run_that_is_killed_ten_times_bakes_each_frame_once(tmp_path, undisturbed):
     chance = np.random.default_rng(40)
     done = {}

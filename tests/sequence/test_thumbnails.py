@@ -93,7 +93,7 @@ def peak(folder, kind, count):
 @pytest.mark.parametrize(
     ("kind", "frames", "each"),
     [
-        ("sheet", 400, 0.03),
+        pytest.param("sheet", 400, 0.03, marks=pytest.mark.slow),
         pytest.param("sheet", 2000, 0.03, marks=pytest.mark.slow),
         ("webp", 200, 0.05),
         ("gif", 60, 0.3),
