@@ -7,6 +7,8 @@ import sys
 import time
 from pathlib import Path
 
+import pytest
+
 import skybake
 
 PACKAGES = Path(skybake.__file__).parents[1]
@@ -15,8 +17,6 @@ INTRUDERS = ("llvmlite", "numba", "numpy", "runpy", "click", "skybake", "json")
 
 RENDER = """
 import sys
-
-import pytest
 from skybake.__main__ import run
 run()
 """
