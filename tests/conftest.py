@@ -44,6 +44,8 @@ def pytest_cmdline_main(config):
             return
         option.numprocesses = min(len(os.sched_getaffinity(0)), 4)
         option.dist = "loadfile"
+        # By number of tests, files of few long ones would come last and keep one CPU.
+        option.loadscopereorder = False
 
 
 @pytest.fixture

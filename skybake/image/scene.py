@@ -35,6 +35,9 @@ and interpolation leave below 0 where there is no light."""
 DARK = 1e-9
 """Of a white surface in full sun: on Earth a fifth of the sky's luminance in a dark night."""
 
+DIM = 1e-3
+"""Of the brightest luminance: where no place is darker, interpolation stays above 0."""
+
 UNDERSHOOT = 0.01
 """Of the brightest luminance: the most that interpolation may be below 0; it is 0 then."""
 
@@ -175,9 +178,10 @@ class Scene:
         return least, most
 
     @cached_property
-    def _is_rounded(self) -> bool:
-        """Whether luminances fall below 0 by rounding, as in the dark."""
-        return bool((self.survey @ self.luminance).min() < 0.0)
+    def _may_undershoot(self) -> bool:
+        """Whether places are so dark beside others that interpolation may fall below 0 there."""
+        least, most = self._range(self.survey @ self.luminance)
+        return least < DIM * most
 
     def _rounding(self, brightest: float) -> float:
         """Luminance below which a negative one is none. [cd m⁻²]"""
@@ -235,7 +239,7 @@ class Scene:
             As of `survey`.
         """
         pixels = self._evaluate(self.table, zenith, azimuth, footprint)
-        if self._is_rounded:
+        if self._may_undershoot:
             pixels[pixels @ self.luminance < 0.0] = 0.0
         return pixels
 
