@@ -29,14 +29,15 @@ SURVEY_ROWS = 256
 """Rows of an equirect map by which the light of a scene is judged."""
 
 ROUNDING = 1e-6
-"""Of the brightest luminance, and of a white surface's in full sun `DARK`: what single precision
-and interpolation leave below 0 where there is no light."""
+"""Of the brightest luminance: what single precision leaves below 0 where there is no light."""
 
 DARK = 1e-9
-"""Of a white surface in full sun: on Earth a fifth of the sky's luminance in a dark night."""
+"""Of the luminance of a white surface in full sun, below which a negative one is none: on Earth a
+fifth of that of the sky in a dark night."""
 
 DIM = 1e-3
-"""Of the brightest luminance: where no place is darker, interpolation stays above 0."""
+"""Of the brightest luminance: only where a place is darker are pixels looked through for negative
+ones, which takes time. Skies of presets by day have none; not proven for every world."""
 
 UNDERSHOOT = 0.01
 """Of the brightest luminance: the most that interpolation may be below 0; it is 0 then."""
@@ -142,11 +143,11 @@ class Scene:
         """The table and its survey; where few azimuths ring at a sharp shadow, of all of them."""
         table = self._stages.folded_table(self.sky, self.rgb_weights)
         survey = self._survey(table)
-        least, most = self._range(survey @ self.luminance)
+        least, most = self._range(survey, self.luminance)
         if least < -self._rounding(most):
             table = self._stages.folded_table(self.sky, self.rgb_weights, finely=True)
             survey = self._survey(table)
-            least, most = self._range(survey @ self.luminance)
+            least, most = self._range(survey, self.luminance)
             # Cubics between rays that are sound swing a little below 0 beside a shadow's edge.
             if self._has_sound_rays() and least > -UNDERSHOOT * most:
                 least = 0.0
@@ -167,11 +168,13 @@ class Scene:
         """Whether the rays that the table interpolates between bring no negative light."""
         table = self._stages.spectral_table(self.sky, finely=True)
         radiance = radiance_at_nodes(table, self.sky.skylight.phase)
-        least, most = self._range(radiance @ self.xyz_weights[:, 1])
+        least, most = self._range(radiance, self.xyz_weights[:, 1])
         return least >= -self._rounding(most)
 
-    def _range(self, luminance: Array) -> tuple[float, float]:
-        """Return the least and the greatest luminance. [cd m⁻²]"""
+    def _range(self, values: np.ndarray, weights: Array) -> tuple[float, float]:
+        """Return the least and the greatest luminance, the sum of values times weights. [cd m⁻²]"""
+        with np.errstate(invalid="ignore"):
+            luminance = values @ weights
         least, most = float(luminance.min()), float(luminance.max())
         if not math.isfinite(least) or not math.isfinite(most):
             raise UnsolvableError(f"light: luminance must be finite, got {least + most}")
@@ -180,7 +183,7 @@ class Scene:
     @cached_property
     def _may_undershoot(self) -> bool:
         """Whether places are so dark beside others that interpolation may fall below 0 there."""
-        least, most = self._range(self.survey @ self.luminance)
+        least, most = self._range(self.survey, self.luminance)
         return least < DIM * most
 
     def _rounding(self, brightest: float) -> float:
