@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     )
     from skybake.image.image import Image
     from skybake.image.light import Light
+    from skybake.image.picture_settings import PictureSettings
     from skybake.image.scene import Scene
     from skybake.image.settings import Encoding, Lighting, MapSettings, View, map_settings
     from skybake.jit.workers import Workers
@@ -100,6 +101,7 @@ __all__ = [
     "Override",
     "Perspective",
     "Phase",
+    "PictureSettings",
     "Pipeline",
     "Place",
     "Plan",
@@ -169,6 +171,7 @@ _HOMES = {
     "Override": "skybake.preset",
     "Perspective": "skybake.projection",
     "Phase": "skybake.preset",
+    "PictureSettings": "skybake.image.picture_settings",
     "Pipeline": "skybake.pipeline",
     "Place": "skybake.ephemeris.place",
     "Plan": "skybake.sequence.plan",

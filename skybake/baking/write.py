@@ -5,22 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
 from skybake.baking.paths import default_path, map_paths
-from skybake.formats.preview import check_preview, open_preview
+from skybake.formats.preview import check_preview
 from skybake.formats.scanlines import Rows
 from skybake.formats.spec import Attribute, MapSpec
 from skybake.formats.whole_files import WholeFiles
 from skybake.formats.writer import MapWriter, check_map_path, open_maps
 from skybake.image.light import Light, attributes_from_light, light_of_scene
-from skybake.image.picture import PREVIEW_WIDTH, scene_ev, show_scene
+from skybake.image.picture_settings import PictureSettings
 from skybake.image.raster import Raster
-from skybake.image.recipe import preview_texts, recipe_attributes
+from skybake.image.recipe import recipe_attributes
 from skybake.image.scene import Scene
 from skybake.image.settings import MapSettings
 from skybake.jit.workers import Workers
@@ -49,6 +48,8 @@ class Baked(Light):
         The display-referred picture.
     preview_ev : float or None
         Exposure value of the picture.
+    preview_white : tuple of float or None
+        CIE xy of the light that is white in it; None for D65.
     clamped : int
         Negative values that became 0 in a format without a sign.
     """
@@ -58,6 +59,7 @@ class Baked(Light):
     pixel: str
     preview: Path | None
     preview_ev: float | None
+    preview_white: tuple[float, float] | None
     clamped: int
 
 
@@ -67,8 +69,7 @@ def bake(
     settings: MapSettings | None = None,
     *,
     preview: Path | str | None = None,
-    preview_ev: float | None = None,
-    preview_view: str = "aces2",
+    picture: PictureSettings | None = None,
     attributes: Mapping[str, Attribute] | None = None,
     progress: Progress | None = None,
     notice: Callable[[str], None] | None = None,
@@ -86,10 +87,8 @@ def bake(
         Sun, observer, map, colour and pixels.
     preview : Path or str, optional
         Also write a display-referred PNG here.
-    preview_ev : float, optional
-        Its exposure value; by default chosen from the picture.
-    preview_view : {"aces2", "aces1"}, optional
-        Its rendering.
+    picture : PictureSettings, optional
+        How it shows the map.
     attributes : mapping of str to Attribute, optional
         What the files shall state besides their light and their recipe, such as
         ``{"skybake:time": "2026-06-21T04:00:00Z"}``.
@@ -112,7 +111,7 @@ def bake(
     planet = preset if isinstance(preset, Planet) else load_preset(preset)
     output = Path(output) if output else default_path(planet, settings)
     preview = None if preview is None else Path(preview)
-    check_targets(output, settings, preview, preview_view)
+    check_targets(output, settings, preview)
     scene = Scene(planet, settings)
     if notice is not None and not scene.sky.is_solved:
         notice("solving for the light in this atmosphere, once")
@@ -120,16 +119,13 @@ def bake(
         scene,
         output,
         preview=preview,
-        preview_ev=preview_ev,
-        preview_view=preview_view,
+        picture=picture,
         attributes=attributes,
         progress=progress,
     )
 
 
-def check_targets(
-    output: Path, settings: MapSettings, preview: Path | None = None, preview_view: str = "aces2"
-) -> None:
+def check_targets(output: Path, settings: MapSettings, preview: Path | None = None) -> None:
     """Raise the errors of a map's files that can be found before anything is computed.
 
     Raises
@@ -142,7 +138,7 @@ def check_targets(
     for path in map_paths(output, settings):
         check_map_path(path)
     if preview is not None:
-        check_preview(preview, preview_view)
+        check_preview(preview)
 
 
 def bake_scene(
@@ -150,8 +146,7 @@ def bake_scene(
     output: Path,
     *,
     preview: Path | None = None,
-    preview_ev: float | None = None,
-    preview_view: str = "aces2",
+    picture: PictureSettings | None = None,
     attributes: Mapping[str, Attribute] | None = None,
     progress: Progress | None = None,
     files: WholeFiles | None = None,
@@ -188,28 +183,24 @@ def bake_scene(
     with ExitStack() as stack:
         if files is None:
             files = stack.enter_context(WholeFiles())
-        draw = None
+        shown = None
         if preview is not None:
-            preview_ev = scene_ev(scene) if preview_ev is None else preview_ev
-            texts = preview_texts(planet, settings, preview_ev, preview_view)
-            small = settings.view.projection.smaller(PREVIEW_WIDTH).canvases()[0]
-            show = stack.enter_context(
-                open_preview(
-                    preview, view=preview_view, max_width=small.width, texts=texts, files=files
-                )
-            )
-            draw = partial(show_scene, scene, show, preview_ev)
+            from skybake.baking.picture import open_picture
+
+            look = picture or PictureSettings()
+            shown = open_picture(scene, preview, look, files, stack)
         writers = stack.enter_context(open_maps(specs, files))
         _write(rasters, writers, scene.workers, progress)
-        if draw is not None:
-            draw()
+        if shown is not None:
+            shown.draw()
     return Baked(
         **vars(light),
         files=paths,
         white_luminance=encoding.white_luminance,
         pixel=pixel if paths[0].suffix.lower() == ".exr" else "rgbe",
         preview=preview,
-        preview_ev=preview_ev,
+        preview_ev=None if shown is None else shown.ev,
+        preview_white=None if shown is None else shown.white,
         clamped=sum(writer.clamped for writer in writers.values()),
     )
 

@@ -12,7 +12,12 @@ from skybake.commands.memory import check_memory
 from skybake.commands.options import values
 from skybake.commands.options.maps import map_needs, map_options, map_settings
 from skybake.commands.options.observer import altitude_option, sun_azimuth_option, sun_option
-from skybake.commands.options.previews import BESIDE, preview_needs, preview_options
+from skybake.commands.options.previews import (
+    BESIDE,
+    picture_from_options,
+    preview_needs,
+    preview_options,
+)
 from skybake.commands.options.rules import check_needs
 from skybake.commands.options.times import moment_from_options, moment_needs, moment_options
 from skybake.commands.options.world import world_from_options, world_options
@@ -81,8 +86,7 @@ def render(**options: Any) -> None:
             output,
             settings,
             preview=preview,
-            preview_ev=options["preview_ev"],
-            preview_view=options["view"] or values.VIEWS[0],
+            picture=picture_from_options(options, options["preview_ev"]) if preview else None,
             attributes=None if moment is None else moment.attributes,
             progress=progress,
             notice=None if quiet else notice,

@@ -21,7 +21,12 @@ from skybake.commands.options.emit import (
 )
 from skybake.commands.options.maps import map_needs, map_options, map_settings
 from skybake.commands.options.observer import altitude_option, sun_azimuth_option, sun_option
-from skybake.commands.options.previews import BESIDE, preview_needs, sequence_preview_options
+from skybake.commands.options.previews import (
+    BESIDE,
+    picture_from_options,
+    preview_needs,
+    sequence_preview_options,
+)
 from skybake.commands.options.products import product_options, products_from_options
 from skybake.commands.options.rules import Needs, check_needs, usage_faults
 from skybake.commands.options.times import span_from_options, span_needs, span_options
@@ -223,8 +228,8 @@ def _bake(plan: Plan, part: Plan, products: Products, options: Mapping[str, Any]
     from skybake.sequence.bake import check_sequence, frame_pool
     from skybake.sequence.run import bake_frames
 
-    view, quiet = options["view"] or values.VIEWS[0], options["quiet"]
-    check_sequence(part, products, view)
+    quiet = options["quiet"]
+    check_sequence(part, products)
     if not quiet:
         announce_kernels()
     with (
@@ -233,8 +238,7 @@ def _bake(plan: Plan, part: Plan, products: Products, options: Mapping[str, Any]
             plan,
             part,
             products=products,
-            view=view,
-            preview_ev=options["preview_ev"] or "auto",
+            picture=picture_from_options(options, options["preview_ev"]),
             skip_existing=options["skip_existing"],
             workers=options["workers"],
             dask=options["dask"],

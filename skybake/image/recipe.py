@@ -50,15 +50,3 @@ def recipe_attributes(planet: Planet, settings: MapSettings) -> dict[str, Attrib
         "skybake:recipe": recipe_text(planet, settings),
         HASH_ATTRIBUTE: recipe_hash(planet, settings),
     }
-
-
-def preview_texts(planet: Planet, settings: MapSettings, ev: float, view: str) -> dict[str, str]:
-    """Return the text chunks of a map's preview.
-
-    The exposure value is rounded to less than a visible difference.
-    """
-    return {
-        HASH_ATTRIBUTE: recipe_hash(planet, settings),
-        "skybake:exposureValue": f"{ev:.4f}",
-        "skybake:view": view,
-    }

@@ -68,6 +68,12 @@ def _probe_zeniths() -> tuple[Array, Array]:
     return math.pi / 4.0 * (node + 1.0), math.pi / 4.0 * weight
 
 
+def _horizontal_weights() -> Array:
+    """Weights of these zenith angles in the illuminance of a horizontal plane."""
+    zenith, weight = _probe_zeniths()
+    return weight * np.sin(zenith) * np.cos(zenith)
+
+
 class Scene:
     """What a map shows, ready to be evaluated at pixels.
 
@@ -226,12 +232,25 @@ class Scene:
 
     def sky_illuminance(self) -> float:
         """Illuminance of a horizontal plane by the sky without the sun's disc. [lx]"""
-        zenith, weight = _probe_zeniths()
+        luminance = self._sky_by_zenith @ self.luminance
+        return float(2.0 * math.pi * (_horizontal_weights() * luminance).sum())
+
+    def sky_xyz(self) -> Array:
+        """XYZ by the sky without the sun's disc, on the horizontal, shape (3,). [lx]"""
+        encoding = self.settings.encoding
+        flux = 2.0 * math.pi * _horizontal_weights() @ self._sky_by_zenith
+        xyz_from_rgb = np.linalg.inv(rgb_from_xyz(encoding.space))
+        xyz: Array = encoding.white_luminance * (xyz_from_rgb @ flux)
+        return xyz
+
+    @cached_property
+    def _sky_by_zenith(self) -> Array:
+        """Mean pixel values around the sky at the zenith angles of a probe, (zenith, 3)."""
+        zenith, _ = _probe_zeniths()
         azimuth = math.pi * (np.arange(PROBE_AZIMUTHS) + 0.5) / PROBE_AZIMUTHS
         pixels = self.evaluate(zenith[:, None], azimuth[None], 1e-9)
-        luminance = pixels.astype(float).mean(axis=1) @ self.luminance
-        flux = weight * np.sin(zenith) * np.cos(zenith)
-        return float(2.0 * math.pi * (flux * luminance).sum())
+        mean: Array = pixels.astype(float).mean(axis=1)
+        return mean
 
     def evaluate(self, zenith: Array, azimuth: Array, footprint: Array | float) -> np.ndarray:
         """Pixel values of the sky, see `fill_directions`, shape (row, column, 3).

@@ -25,10 +25,13 @@ class Chart(ABC):
     ----------
     width, height : int
         [pixel]
+    wraps : bool
+        Whether the last column is the neighbour of the first.
     """
 
     width: int
     height: int
+    wraps: ClassVar[bool] = False
 
     @abstractmethod
     def angles(self, first: int, last: int) -> tuple[Array, Array]:
@@ -64,6 +67,22 @@ class Chart(ABC):
         ----------
         zenith, bearing, radius : float
             Centre of the disc and its angular radius. [rad]
+        """
+
+    @abstractmethod
+    def places(self, vectors: Array) -> tuple[Array, Array]:
+        """Where the chart shows directions, the inverse of `angles`.
+
+        Parameters
+        ----------
+        vectors : ndarray of float64, shape (..., 3)
+            Unit vectors.
+
+        Returns
+        -------
+        row, column : ndarray of float64, shape (...)
+            In pixels from the upper left corner, so that centres are at a half; NaN for
+            directions that it does not show.
         """
 
     def looks_nowhere(self, _first: int, _last: int) -> npt.NDArray[np.bool_] | None:

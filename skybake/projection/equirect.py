@@ -15,7 +15,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 import numpy.typing as npt
 
-from skybake.angles import direction_from_angles
+from skybake.angles import direction_from_angles, zenith_azimuth
 from skybake.errors import InputError
 from skybake.projection.cells import CELLS_PER_RADIUS, Array, Cells, cover, subdivide
 from skybake.projection.chart import Canvas, Chart, Projection, check_edge, size_text, whole
@@ -54,12 +54,20 @@ class EquirectChart(Chart):
         Twice the height. [pixel]
     """
 
+    wraps: ClassVar[bool] = True
+
     def __init__(self, width: int) -> None:
         self.width, self.height = width, width // 2
 
     def angles(self, first: int, last: int) -> tuple[Array, Array]:
         """Directions of the texels: rows share zenith angles, columns bearings."""
         return row_zeniths(self.height)[first:last, None], column_bearings(self.width)[None]
+
+    def places(self, vectors: Array) -> tuple[Array, Array]:
+        """Where the map shows directions."""
+        zenith, bearing = zenith_azimuth(vectors)
+        turns = bearing / (2.0 * math.pi)
+        return zenith / math.pi * self.height, (turns - np.floor(turns)) * self.width
 
     def footprints(self, _first: int, _last: int) -> Array:
         """Extent of a texel in zenith angle."""

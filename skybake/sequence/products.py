@@ -120,7 +120,7 @@ class Products:
             write_animation(self.animation, stills, self.fps)
         if self.contact_sheet is not None:
             tiles = self._thumbnails.pictures(TILE_WIDTH, numbers)
-            labels = [_tile_label(frames[outcome.number]) for outcome in outcomes]
+            labels = [_tile_label(frames[outcome.number], outcome) for outcome in outcomes]
             contact_sheet(self.contact_sheet, tiles, labels, title=self.plan.planets[0].title)
         return self.paths
 
@@ -190,9 +190,19 @@ def _seen_from(folder: Path, path: Path) -> str:
     return Path(os.path.relpath(path, folder)).as_posix()
 
 
-def _tile_label(frame: Frame) -> str:
+def _tile_label(frame: Frame, outcome: FrameOutcome) -> str:
+    """Time and sun of a frame, and below them its exposure and the light on the ground."""
     sun = f"sun {math.degrees(frame.settings.lighting.sun_elevation):.1f} deg"
     time = (frame.label or str(frame.number)).removesuffix(":00")
     if frame.label and "skybake:time" in frame.attributes:
         time = f"{datetime.fromisoformat(frame.label):%Y-%m-%d %H:%M}"
-    return f"{time}  {sun}"
+    lux = outcome.light.direct_illuminance + outcome.light.sky_illuminance
+    return f"{time}  {sun}\nEV {outcome.tile_ev:.1f}  {_rounded(lux)} lx"
+
+
+def _rounded(lux: float) -> str:
+    """Write an illuminance with three digits, and in thousands with a space between."""
+    if not 1e-3 <= lux < 1e6:
+        return f"{lux:.2g}"
+    rounded = float(f"{lux:.3g}")
+    return f"{rounded:,.0f}".replace(",", " ") if rounded >= 100.0 else f"{rounded:g}"

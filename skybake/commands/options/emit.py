@@ -23,7 +23,7 @@ _LEFT_OUT = {
     *("only", "emit_commands", "emit_openjd", "chunk_size", "dry_run", "as_json", "dask"),
     *("manifests", "contact_sheet", "animate", "fps", "style", "quiet"),
 }
-_OF_PREVIEWS = {"preview_ev", "view"}
+_OF_PREVIEWS = {"preview_ev", "white_balance", "shot", "view"}
 _PATHS = {"output", "preview", "exposure_curve"}
 
 HOW = frozenset({"skip_existing", "retry", "workers"})

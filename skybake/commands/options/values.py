@@ -33,7 +33,8 @@ UNITS = ("ev15", "nits")
 PIXELS = ("auto", "half", "float")
 SUN_DISCS = ("include", "exclude", "only")
 METHODS = ("full", "hillaire", "march")
-VIEWS = ("aces2", "aces1")
+VIEWS = ("aces1", "aces2")
+COLDEST, HOTTEST = 1000.0, 25_000.0
 
 Paths = TypeVar("Paths", Path | None, tuple[Path, ...])
 
@@ -41,6 +42,7 @@ Paths = TypeVar("Paths", Path | None, tuple[Path, ...])
 _RIGHT_ANGLE = math.pi / 2 + 1e-9
 
 _MOST_TURNS = 1000
+_WIDEST = math.radians(170.0)
 _FASTEST = 1000.0
 
 # Click shows the message of a click.BadParameter, but only the value of a ValueError.
@@ -149,6 +151,34 @@ def sequence_exposure(text: str) -> float | str:
         return text
     number = exposure(text)
     return "auto" if number is None else number
+
+
+def white_balance(text: str) -> float | str:
+    """Read ``auto``, ``none`` or a colour temperature such as ``5500K``. [K]"""
+    if text in {"auto", "none"}:
+        return text
+    try:
+        kelvin = float(text.removesuffix("K"))
+    except ValueError:
+        kelvin = math.nan
+    if not COLDEST <= kelvin <= HOTTEST:
+        raise click.BadParameter(
+            f"must be auto, none or a temperature from {COLDEST:g}K to {HOTTEST:g}K, got {text!r}"
+        )
+    return kelvin
+
+
+def shot(text: str) -> tuple[float, float, float]:
+    """Read a compass bearing, an elevation and a field of view with commas between. [rad]"""
+    parts = text.split(",")
+    if len(parts) != 3:
+        raise click.BadParameter(f"must be AZIMUTH,ELEVATION,FOV such as 180,10,50, got {text!r}")
+    fov = field_of_view(parts[2])
+    if fov > _WIDEST:
+        raise click.BadParameter(
+            f"must have a field of view of at most {math.degrees(_WIDEST):g}deg, got {parts[2]}"
+        )
+    return bearing(parts[0]), elevation(parts[1]), fov
 
 
 def frame_rate(text: str) -> float:

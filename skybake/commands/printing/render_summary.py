@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from skybake.commands.printing.pictures import picture_line
+
 if TYPE_CHECKING:
     from skybake.baking import Baked
     from skybake.ephemeris.moment import Moment
@@ -17,8 +19,8 @@ def print_summary(baked: Baked, seconds: float) -> None:
     """Print files and illuminances, human-readable."""
     for path in baked.files:
         click.echo(path)
-    if baked.preview is not None:
-        click.echo(f"{baked.preview}  exposed for EV {baked.preview_ev:.2f}")
+    if baked.preview is not None and baked.preview_ev is not None:
+        click.echo(picture_line(baked.preview, baked.preview_ev, baked.preview_white))
     click.echo(
         f"sun {baked.direct_illuminance:.5g} lx ({baked.direct_normal_illuminance:.5g} lx facing "
         f"it), sky {baked.sky_illuminance:.5g} lx on the horizontal; "
@@ -54,5 +56,6 @@ def result(
         "clamped": baked.clamped,
         "preview": None if baked.preview is None else str(baked.preview),
         "preview_ev": baked.preview_ev,
+        "preview_white": None if baked.preview_white is None else list(baked.preview_white),
         "seconds": round(seconds, 3),
     }

@@ -1,0 +1,66 @@
+"""White balance, beside colour-science."""
+
+import colour
+import numpy as np
+import pytest
+
+from skybake.colour.space import COLOUR_SPACES, D65, rgb_from_xyz, xyz_from_xy
+from skybake.colour.white_balance import balance, chromaticity, white_from_kelvin
+from skybake.errors import InputError
+
+REC709 = COLOUR_SPACES["lin_rec709"]
+DUST = xyz_from_xy(0.38, 0.37)
+
+
+@pytest.mark.parametrize("kelvin", [4000.0, 5003.0, 6504.0, 7000.0, 7001.0, 15000.0, 25000.0])
+def test_a_temperature_of_daylight_has_the_chromaticity_of_the_cie(kelvin):
+    expected = colour.temperature.CCT_to_xy_CIE_D(kelvin)
+
+    np.testing.assert_allclose(chromaticity(white_from_kelvin(kelvin)), expected, atol=1e-9)
+
+
+@pytest.mark.parametrize("kelvin", [1000.0, 1900.0, 2856.0, 3999.0])
+def test_a_lower_temperature_is_that_of_a_black_body(kelvin):
+    shape = colour.SpectralShape(360, 830, 1)
+    lamp = colour.sd_to_XYZ(colour.sd_blackbody(kelvin, shape), method="Integration")
+
+    np.testing.assert_allclose(
+        chromaticity(white_from_kelvin(kelvin)), colour.XYZ_to_xy(lamp), atol=2e-5
+    )
+
+
+@pytest.mark.parametrize("space", COLOUR_SPACES.values(), ids=lambda space: space.name)
+def test_the_adaptation_is_that_of_bradford_in_every_space(space):
+    matrix = colour.adaptation.matrix_chromatic_adaptation_VonKries(
+        DUST, xyz_from_xy(*D65), transform="Bradford"
+    )
+    xyz = np.array([0.3, 0.4, 0.9])
+    to_rgb = rgb_from_xyz(space)
+
+    np.testing.assert_allclose(
+        balance(space, 700.0 * DUST) @ to_rgb @ xyz, to_rgb @ matrix @ xyz, rtol=1e-4
+    )
+
+
+def test_the_light_itself_becomes_grey_and_keeps_its_luminance():
+    light = rgb_from_xyz(REC709) @ (250.0 * DUST)
+
+    np.testing.assert_allclose(balance(REC709, DUST) @ light, [250.0] * 3, rtol=1e-9)
+
+
+def test_daylight_of_6504_kelvin_is_left_as_it_is():
+    np.testing.assert_allclose(balance(REC709, white_from_kelvin(6504.0)), np.eye(3), atol=2e-3)
+
+
+def test_light_without_blue_stays_coloured_and_finite():
+    matrix = balance(REC709, np.array([0.6, 0.4, 1e-9]))
+    shown = matrix @ np.array([1.0, 1.0, 1.0])
+
+    assert np.isfinite(matrix).all()
+    assert np.abs(shown).max() < 12.0
+
+
+@pytest.mark.parametrize("light", [(0.0, 0.0, 0.0), (np.nan, 1.0, 1.0), (-1.0, -1.0, -1.0)])
+def test_what_is_no_light_is_refused(light):
+    with pytest.raises(InputError, match="white balance: must be by a light, got XYZ"):
+        balance(REC709, np.array(light))
