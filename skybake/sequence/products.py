@@ -120,7 +120,7 @@ class Products:
             write_animation(self.animation, stills, self.fps)
         if self.contact_sheet is not None:
             tiles = self._thumbnails.pictures(TILE_WIDTH, numbers)
-            labels = [_tile_label(frames[outcome.number], outcome) for outcome in outcomes]
+            labels = [tile_label(frames[outcome.number], outcome) for outcome in outcomes]
             contact_sheet(self.contact_sheet, tiles, labels, title=self.plan.planets[0].title)
         return self.paths
 
@@ -190,8 +190,11 @@ def _seen_from(folder: Path, path: Path) -> str:
     return Path(os.path.relpath(path, folder)).as_posix()
 
 
-def _tile_label(frame: Frame, outcome: FrameOutcome) -> str:
-    """Time and sun of a frame, and below them its exposure and the light on the ground."""
+def tile_label(frame: Frame, outcome: FrameOutcome) -> str:
+    """Time and sun of a frame, and below them the exposure of its tile and the light outside.
+
+    That is the illuminance of a horizontal plane by sun and sky.
+    """
     sun = f"sun {math.degrees(frame.settings.lighting.sun_elevation):.1f} deg"
     time = (frame.label or str(frame.number)).removesuffix(":00")
     if frame.label and "skybake:time" in frame.attributes:

@@ -66,7 +66,7 @@ LOOKS = [(preset, sun) for preset in ("earth", "mars") for sun in (60, 30, 3, 0,
 
 @pytest.mark.parametrize(("preset", "elevation"), LOOKS)
 def test_the_sky_on_screen_is_as_bright_as_on_photographs(tmp_path, preset, elevation):
-    """Mean of what a screen emits, above the horizon, of white; skies at dusk have a wide range."""
+    """The median over solid angle above the horizon, of what a screen emits of white."""
     show(tmp_path, preset, elevation)
     emitted = on_screen(tmp_path / "a.png")[:64]
     weights = np.repeat(solid_angles(256, 128)[:64, None], 256, axis=1)
@@ -74,7 +74,7 @@ def test_the_sky_on_screen_is_as_bright_as_on_photographs(tmp_path, preset, elev
     order = np.argsort(emitted, axis=None)
     below = np.cumsum(weights.ravel()[order]) / weights.sum()
     median = emitted.ravel()[order][np.searchsorted(below, 0.5)]
-    assert 0.12 < median < 0.30
+    assert 0.15 < median < 0.30
 
 
 def test_the_ground_is_seen_at_low_sun_on_mars(tmp_path):
@@ -87,10 +87,11 @@ def test_the_ground_is_seen_at_low_sun_on_mars(tmp_path):
 def test_the_lit_planet_from_orbit_is_neither_white_nor_black(tmp_path, elevation):
     show(tmp_path, "earth", elevation, altitude=400.0)
     emitted = on_screen(tmp_path / "a.png")[64:]
-    lit = emitted[emitted > 0.02]
+    # Of what is emitted, half by places darker than this.
+    ascending = np.sort(emitted, axis=None)
+    middle = ascending[np.searchsorted(np.cumsum(ascending), 0.5 * ascending.sum())]
 
-    assert lit.size
-    assert 0.1 < np.median(lit) < 0.6
+    assert 0.15 < middle < 0.6
     assert (emitted > 0.95).mean() < 0.01
 
 
@@ -163,7 +164,8 @@ def test_the_white_of_a_file_is_that_of_its_scene(tmp_path, projection, disc):
 
 @pytest.mark.parametrize("size", [(256, 128), (128, 96), (96, 128), (32, 192), (100, 100)])
 def test_a_perspective_picture_of_any_shape_is_metered_as_one(tmp_path, size):
-    options = {"projection": "perspective", "size": size, "elevation": 0.3}
+    """Also one that has the shape of a map of the whole sphere."""
+    options = {"projection": "perspective", "size": size, "elevation": 0.3, "sun_azimuth": 0.0}
     baked = show(tmp_path, "earth", 10, **options)
 
     assert preview_file(tmp_path / "a.exr", tmp_path / "b.png").ev == pytest.approx(
@@ -205,7 +207,8 @@ def test_what_a_fisheye_does_not_show_is_black_in_a_shot(tmp_path):
     shown = pixels(tmp_path / "b.png")
 
     assert shown[:280].min() > 0.1
-    assert shown[300:].max() == 0.0
+    # But for the dither.
+    assert shown[300:].max() < 1.5 / 255
 
 
 def test_a_preview_says_how_it_shows_the_map(tmp_path):
@@ -217,7 +220,7 @@ def test_a_preview_says_how_it_shows_the_map(tmp_path):
         assert texts["skybake:whiteBalance"] == "5500K"
         assert texts["skybake:view"] == "aces2"
         assert texts["skybake:shot"] == "180,5.729577951,57.29577951"
-        assert 5.0 < float(texts["skybake:exposureValue"]) < 15.0
+        assert 13.0 < float(texts["skybake:exposureValue"]) < 16.0
 
 
 @pytest.mark.parametrize(
@@ -247,9 +250,9 @@ def test_pictures_of_any_shape_are_exposed(tmp_path, shape):
     assert 70.0 / luminance_from_ev(ev) == pytest.approx(0.36, rel=1e-6)
 
 
-def show(folder, preset, elevation, picture=None, **options):
+def show(folder, preset, sun, picture=None, **options):
     """Bake a small map and its preview, a.exr and a.png."""
-    settings = map_settings(sun_elevation=math.radians(elevation), **{"size": 256} | options)
+    settings = map_settings(sun_elevation=math.radians(sun), **{"size": 256} | options)
     return bake(preset, folder / "a.exr", settings, preview=folder / "a.png", picture=picture)
 
 

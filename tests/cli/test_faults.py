@@ -51,7 +51,18 @@ USAGE = """
 --preview --preview-ev bright     => '--preview-ev': must be auto or a number from -30 to 40
 --preview-ev 3                    => --preview-ev: needs --preview
 --view aces1                      => --view: needs --preview
---preview --view film             => '--view': 'film' is not one of 'aces2', 'aces1'.
+--preview --view film             => '--view': 'film' is not one of 'aces1', 'aces2'.
+--white-balance auto              => --white-balance: needs --preview
+--preview --white-balance warm    => '--white-balance': must be auto, none or a temperature from 10
+--preview --white-balance 900K    => '--white-balance': must be auto, none or a temperature from 10
+--preview --white-balance nan     => '--white-balance': must be auto, none or a temperature from 10
+--shot 180,0,50                   => --shot: needs --preview
+--preview --shot 180,0            => '--shot': must be AZIMUTH,ELEVATION,FOV such as 180,10,50, got
+--preview --shot 180,0,50,1       => '--shot': must be AZIMUTH,ELEVATION,FOV such as 180,10,50, got
+--preview --shot 180,95,50        => '--shot': must be from -90deg to 90deg, got 95
+--preview --shot 180,0,0          => '--shot': must be greater than 0deg, got 0
+--preview --shot 180,0,171        => '--shot': must have a field of view of at most 170deg, got 171
+--preview --shot 180,0,50m        => '--shot': must be an angle such as 5deg
 --colour acescg                   => No such option
 spare                             => Got unexpected extra argument (spare)
 --sun                             => Option '--sun' requires an argument.
@@ -92,6 +103,8 @@ def test_a_cube_in_one_exr_is_no_radiance_picture(tmp_path, monkeypatch):
         (("preview",), "Missing argument 'IN'."),
         (("preview", "a.exr", "-o", "a.jpg"), "a.jpg: suffix must be .png, got '.jpg'"),
         (("preview", "a.exr", "--ev", "x"), "must be auto or a number from -30 to 40, got 'x'"),
+        (("preview", "a.exr", "--shot", "1,2"), "must be AZIMUTH,ELEVATION,FOV such as 180,10,50"),
+        (("preview", "a.exr", "--white-balance", "x"), "must be auto, none or a temperature from"),
     ],
 )
 def test_wrong_usage_of_the_other_commands_is_exit_2(arguments, message):

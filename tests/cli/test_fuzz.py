@@ -30,6 +30,8 @@ EXAMPLES = {
     "ev": ["15", "-40", "1e400"],
     "compression": ["zip:4", "piz", "dwaa:45", "lzw", "zip:x"],
     "preview_ev": ["auto", "12", "adapt"],
+    "white_balance": ["auto", "none", "5500K", "4000", "9", "warm"],
+    "shot": ["180,10,50", "90deg,0.1rad,1rad", "0,91,20", "0,0,175", "0,0,0", "180", "x,y,z"],
     "latitude": ["48.85", "90N", "91"],
     "longitude": ["2.35", "200W", "E"],
     "zone": ["Europe/Paris", "UTC", "Mars/Gale"],

@@ -41,9 +41,9 @@ def test_json_says_what_was_baked(folder):
     assert (told["projection"], told["colorspace"]) == ("equirect", "lin_rec709")
     assert told["pixel"] == "half"
     assert told["clamped"] == 0
-    assert (told["preview"], told["preview_ev"]) == (None, None)
+    assert (told["preview"], told["preview_ev"], told["preview_white"]) == (None, None, None)
     assert 0.0 < told["seconds"] < 300.0
-    assert len(told) == 15
+    assert len(told) == 16
 
 
 def test_the_file_carries_what_json_says():

@@ -53,6 +53,8 @@ P --from 2026-06-21T04:00 --to 2026-06-21T04:00 --every 1h => --to: must be afte
 --frames 1-3 --preview sky.#.jpg       => '--preview': sky.#.jpg: suffix must be .png, got '.jpg'
 --frames 1-3 --preview-ev 3            => --preview-ev: needs --preview or --contact-sheet or --anim
 --frames 1-3 --view aces1              => --view: needs --preview or --contact-sheet or --animate
+--frames 1-3 --white-balance auto      => --white-balance: needs --preview or --contact-sheet or --a
+--frames 1-3 --shot 180,0,50           => --shot: needs --preview or --contact-sheet or --animate
 --frames 1-3 --preview --preview-ev x  => '--preview-ev': must be auto or a number from -30 to 40
 --frames 1-3 --exposure-curve a.csv --ev 3 => --ev: cannot be combined with --exposure-curve
 --frames 1-3 --exposure-curve a.csv --units nits => --units: cannot be combined with --exp
@@ -284,7 +286,8 @@ def test_emitted_commands_have_what_makes_the_frames_and_nothing_else(folder):
         *("--preset", "own.toml", "--set", "aerosol.optical_depth=0.1..0.3", *DAY),
         *("--set", "ground.albedo=flat.csv", "--frames", "1-4", "--chunk-size", "3"),
         *("-o", "out dir/a.#.exr", "--workers", "1", "--skip-existing", "--retry", "2"),
-        *("--contact-sheet", "s.png", "--preview-ev", "3", "--view", "aces1"),
+        *("--contact-sheet", "s.png", "--preview-ev", "3", "--view", "aces2"),
+        *("--white-balance", "auto", "--shot", "180,0,50"),
         *("--exposure-curve", "ev.csv", "--manifest", "m.json", "--dask", "tcp://a:1", "-q"),
     )
     first = (

@@ -21,11 +21,12 @@ def test_a_temperature_of_daylight_has_the_chromaticity_of_the_cie(kelvin):
 
 @pytest.mark.parametrize("kelvin", [1000.0, 1900.0, 2856.0, 3999.0])
 def test_a_lower_temperature_is_that_of_a_black_body(kelvin):
-    shape = colour.SpectralShape(360, 830, 1)
-    lamp = colour.sd_to_XYZ(colour.sd_blackbody(kelvin, shape), method="Integration")
+    observer = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"]
+    radiance = colour.sd_blackbody(kelvin, observer.shape).values
+    lamp = radiance @ observer.values
 
     np.testing.assert_allclose(
-        chromaticity(white_from_kelvin(kelvin)), colour.XYZ_to_xy(lamp), atol=2e-5
+        chromaticity(white_from_kelvin(kelvin)), colour.XYZ_to_xy(lamp), atol=1e-5
     )
 
 
