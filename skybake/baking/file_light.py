@@ -11,7 +11,7 @@ import numpy as np
 from skybake.angles import direction_from_angles
 from skybake.colour.exposure import auto_ev
 from skybake.colour.space import ColourSpace, find_colour_space, luminance_weights, rgb_from_xyz
-from skybake.colour.white_balance import Array, white_from_kelvin
+from skybake.colour.white_balance import Array, automatic_white, white_from_kelvin
 from skybake.image.layers import Pixels
 from skybake.image.picture_settings import PictureSettings, WhiteBalance, has_size_of_earth
 from skybake.projection.chart import Canvas, Chart
@@ -98,9 +98,12 @@ class FileLight:
         if white_balance != "auto":
             return white_from_kelvin(float(white_balance))
         light = self._on_the_horizontal()
-        if light[1] > _DARK and np.isfinite(light).all():
-            return light
-        return self._sun_colour()
+        if not (light[1] > _DARK and np.isfinite(light).all()):
+            colour = self._sun_colour()
+            if colour is None:
+                return None
+            light = colour
+        return automatic_white(light)
 
     def _on_the_horizontal(self) -> Array:
         """XYZ on a horizontal plane; of a part of the sky as if all of it were like that part."""

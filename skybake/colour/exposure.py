@@ -62,7 +62,7 @@ def luminance_from_units(units: str) -> float:
 SKY_ON_SCREEN = 0.36
 """Scene-linear value of a sky's mean: a stop above middle grey, as photographs have it."""
 
-PLANET_ON_SCREEN = 0.5
+PLANET_ON_SCREEN = 0.7
 """Most that the mean of what is below the horizontal may come to, be it snow or a planet
 below black space."""
 

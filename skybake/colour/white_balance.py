@@ -14,7 +14,8 @@ Array = npt.NDArray[np.float64]
 _DAYLIGHT_FROM = 4000.0
 _SECOND_RADIATION_CONSTANT = 1.438776877e7  # nm K
 
-_LARGEST_GAIN = 8.0
+_WHOLE = 5.0
+"""Ratio of a light's largest response to its smallest up to which one adapts to it wholly."""
 
 
 def white_from_kelvin(kelvin: float) -> Array:
@@ -66,9 +67,7 @@ def balance(space: ColourSpace, white: Array) -> Array:
     Returns
     -------
     ndarray of float64, shape (3, 3)
-        ``balanced = matrix @ rgb``. Luminance of the light is kept. No receptor is amplified by
-        more than eight times another: where a light lacks a part of the spectrum, as deep
-        in Titan's haze, it stays coloured.
+        ``balanced = matrix @ rgb``. Luminance of the light is kept.
 
     Raises
     ------
@@ -78,13 +77,37 @@ def balance(space: ColourSpace, white: Array) -> Array:
     if not (np.isfinite(white).all() and white[1] > 0.0):
         raise InputError(f"white balance: must be by a light, got XYZ {white.tolist()}")
     d65 = xyz_from_xy(*D65)
-    responses = (BRADFORD @ white) / (BRADFORD @ d65)
-    responses = np.maximum(responses, responses.max() / _LARGEST_GAIN)
-    neutral = np.linalg.solve(BRADFORD, responses * (BRADFORD @ d65))
     to_rgb = rgb_from_xyz(space)
-    to_d65 = bradford(neutral / neutral[1], d65)
+    to_d65 = bradford(white / white[1], d65)
     matrix: Array = to_rgb @ to_d65 @ np.linalg.inv(to_rgb)
     return matrix
+
+
+def automatic_white(light: Array) -> Array:
+    """Return what an eye or a camera takes as white in a light.
+
+    Parameters
+    ----------
+    light : ndarray of float64, shape (3,)
+        XYZ, of any luminance above 0.
+
+    Returns
+    -------
+    ndarray of float64, shape (3,)
+        XYZ. The light itself, unless a receptor hardly responds to it: then something between
+        it and D65, down to D65 where the ratio of responses is 25 or more. Nothing could be
+        told from the noise that a gain of so much makes, and in Titan's haze all is orange.
+    """
+    d65 = BRADFORD @ xyz_from_xy(*D65)
+    responses = (BRADFORD @ light) / d65
+    least = max(float(responses.min() / responses.max()), 1e-9)
+    if least * _WHOLE >= 1.0:
+        return light
+    wanted = min(1.0, 1.0 / (_WHOLE * _WHOLE * least))
+    share = (1.0 - wanted) / (1.0 - least)
+    mixed = 1.0 - share + share * np.maximum(responses / responses.max(), 0.0)
+    white: Array = np.linalg.solve(BRADFORD, mixed * d65)
+    return white
 
 
 def chromaticity(xyz: Array) -> tuple[float, float]:

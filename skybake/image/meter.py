@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from skybake.colour.exposure import auto_ev
-from skybake.colour.white_balance import Array, white_from_kelvin
+from skybake.colour.white_balance import Array, automatic_white, white_from_kelvin
 from skybake.image.picture_settings import PictureSettings, white_balance_of
 from skybake.image.raster import Raster, sky_pixels
 from skybake.image.scene import SURVEY_ROWS, Scene
@@ -53,4 +53,4 @@ def scene_white(scene: Scene, settings: PictureSettings) -> Array | None:
     star: Array = scene.xyz_weights.sum(axis=0)
     _, direct = scene.sun_xyz()
     light = direct + scene.sky_xyz()
-    return light if light[1] > NO_LIGHT * star[1] else star
+    return automatic_white(light if light[1] > NO_LIGHT * star[1] else star)

@@ -11,7 +11,7 @@ from skybake.errors import InputError
 from skybake.formats.preview import display_values
 from skybake.projection.equirect import directions, row_zeniths, solid_angles
 
-SKY_ON_DISPLAY, PLANET_ON_DISPLAY = 0.36, 0.5
+SKY_ON_DISPLAY, PLANET_ON_DISPLAY = 0.36, 0.7
 
 
 def graded_sky(zenith, horizon, ground=None):

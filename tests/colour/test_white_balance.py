@@ -4,8 +4,8 @@ import colour
 import numpy as np
 import pytest
 
-from skybake.colour.space import COLOUR_SPACES, D65, rgb_from_xyz, xyz_from_xy
-from skybake.colour.white_balance import balance, chromaticity, white_from_kelvin
+from skybake.colour.space import BRADFORD, COLOUR_SPACES, D65, rgb_from_xyz, xyz_from_xy
+from skybake.colour.white_balance import automatic_white, balance, chromaticity, white_from_kelvin
 from skybake.errors import InputError
 
 REC709 = COLOUR_SPACES["lin_rec709"]
@@ -53,12 +53,32 @@ def test_daylight_of_6504_kelvin_is_left_as_it_is():
     np.testing.assert_allclose(balance(REC709, white_from_kelvin(6504.0)), np.eye(3), atol=2e-3)
 
 
-def test_light_without_blue_stays_coloured_and_finite():
-    matrix = balance(REC709, np.array([0.6, 0.4, 1e-9]))
-    shown = matrix @ np.array([1.0, 1.0, 1.0])
+def weakest_response(light):
+    """Of three receptors, relative to the strongest."""
+    responses = (BRADFORD @ light) / (BRADFORD @ xyz_from_xy(*D65))
+    return responses.min() / responses.max()
 
-    assert np.isfinite(matrix).all()
-    assert np.abs(shown).max() < 12.0
+
+@pytest.mark.parametrize("light", [DUST, 300.0 * white_from_kelvin(3000.0)])
+def test_what_is_taken_as_white_is_the_light_itself(light):
+    np.testing.assert_array_equal(automatic_white(light), light)
+
+
+@pytest.mark.parametrize("light", [(0.53, 0.44, 0.01), (0.6, 0.4, 0.0), (0.7, 0.28, -0.01)])
+def test_in_light_without_blue_one_sees_its_colour(light):
+    np.testing.assert_allclose(
+        chromaticity(automatic_white(np.array(light))), D65, atol=1e-3, rtol=0
+    )
+
+
+def test_between_these_less_and_less_of_the_light_is_taken_as_white():
+    lights = [np.array([0.53, 0.44, blue]) for blue in np.geomspace(0.2, 0.005, 200)]
+    whites = np.array([chromaticity(automatic_white(light)) for light in lights])
+
+    assert weakest_response(lights[0]) > 0.2
+    assert weakest_response(lights[-1]) < 0.04
+    assert np.abs(np.diff(whites, axis=0)).max() < 0.01
+    np.testing.assert_allclose(whites[-1], D65, atol=1e-3)
 
 
 @pytest.mark.parametrize("light", [(0.0, 0.0, 0.0), (np.nan, 1.0, 1.0), (-1.0, -1.0, -1.0)])
