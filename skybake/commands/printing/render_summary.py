@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from skybake.commands.printing.pictures import picture_line
-
 if TYPE_CHECKING:
     from skybake.baking import Baked
     from skybake.ephemeris.moment import Moment
@@ -20,6 +18,8 @@ def print_summary(baked: Baked, seconds: float) -> None:
     for path in baked.files:
         click.echo(path)
     if baked.preview is not None and baked.preview_ev is not None:
+        from skybake.commands.printing.pictures import picture_line
+
         click.echo(picture_line(baked.preview, baked.preview_ev, baked.preview_white))
     click.echo(
         f"sun {baked.direct_illuminance:.5g} lx ({baked.direct_normal_illuminance:.5g} lx facing "
