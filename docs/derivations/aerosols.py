@@ -64,9 +64,9 @@ VENUS_EFFECTIVE_RADIUS = 1.05
 VENUS_EFFECTIVE_VARIANCE = 0.07
 VENUS_WAVELENGTHS = (365.0, 550.0, 990.0)
 VENUS_REFRACTIVE_INDEX = (1.46, 1.44, 1.43)
-# What of the light survives a scattering: Titov et al. (2018), Space Sci. Rev. 214, 126, held beyond
-# 655 nm. Below 445 nm what is absorbed follows the band of the cloud's absorber, about 340 nm and
-# 140 nm wide at half its height: Perez-Hoyos et al. (2018), J. Geophys. Res. Planets 123, 145.
+# What of the light survives a scattering: Titov et al. (2018), Space Sci. Rev. 214, 126, held
+# beyond 655 nm. Below 445 nm what is absorbed follows the band of the cloud's absorber, about 340
+# nm and 140 nm wide at half its height: Perez-Hoyos et al. (2018), J. Geophys. Res. Planets 123, 145.
 VENUS_ALBEDO_WAVELENGTHS = (360.0, 380.0, 400.0, 420.0, 445.0, 550.0, 655.0, 830.0)
 VENUS_ALBEDO = (0.9776, 0.9811, 0.9857, 0.9903, 0.9950, 0.99897, 0.99930, 0.99930)
 
@@ -195,8 +195,8 @@ def main(names):
     if not names or "venus" in names:
         origin = [
             "Spheres of Hansen & Hovenier (1974), J. Atmos. Sci. 31, 1137; single scattering",
-            "albedo of Titov et al. (2018), Space Sci. Rev. 214, 126, below 445 nm with the absorber's",
-            "band as in Perez-Hoyos et al. (2018), J. Geophys. Res. Planets 123, 145.",
+            "albedo of Titov et al. (2018), Space Sci. Rev. 214, 126, below 445 nm with the band",
+            "of the absorber in Perez-Hoyos et al. (2018), J. Geophys. Res. Planets 123, 145.",
             SCRIPT,
         ]
         write_tables("venus_cloud", "Cloud tops of Venus", origin, venus())

@@ -39,10 +39,10 @@ def main():
     write(
         "sun_limb_darkening.csv",
         [
-            "Limb darkening of the sun's continuum: I(mu)/I(1) = 1 - u (1 - mu) - v (1 - mu^2), mu the",
-            "cosine at the photosphere. Quadratics that fit the polynomials of Neckel & Labs (1994),",
-            "Solar Phys. 153, 91, table I.",
-            "Computed by docs/derivations/limb_darkening.py. Licence: published facts; cite the paper.",
+            "Limb darkening of the sun's continuum: I(mu)/I(1) = 1 - u (1 - mu) - v (1 - mu^2),",
+            "mu the cosine at the photosphere. Fitted to the polynomials of Neckel & Labs (1994),",
+            "Solar Phys. 153, 91, table I, by docs/derivations/limb_darkening.py.",
+            "Licence: published facts; cite the paper.",
         ],
         ["wavelength_nm", "limb_darkening_u", "limb_darkening_v"],
         lines,

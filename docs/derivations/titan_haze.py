@@ -18,15 +18,16 @@ MONOMER_RADIUS = 50.0  # nm
 DISTANCE_CUT, FIRST_RADIUS, SECOND_RADIUS, RADIUS_CUT = 3.194, 1.598, 3.478, 1e4
 EXCHANGE_FACTOR, EXCHANGE_EXPONENT = 1.12, 0.529
 
-# Mean cosines of the phase functions that Huygens' light was fitted with, table 1 of that paper:
-# 0.73 in the blue to 0.80 in the red; for 600 nm and less, where it has one table for all
-# altitudes, at most 0.783. The formulae give 0.83 to 0.79. What is missing in the blue, where light
-# is scattered more than once within an aggregate, is taken as isotropic.
+# Mean cosines of the phase functions that Huygens' light was fitted with, table 1 of that paper,
+# lie between 0.729 and 0.799 from 360 to 830 nm, and are at most 0.783 up to 600 nm, where it has
+# one table for all altitudes; they are taken to rise. The formulae give 0.83 in the blue and 0.79
+# in the red. What is missing in the blue, where light is scattered more than once within an
+# aggregate, is taken as isotropic.
 ASYMMETRY_WAVELENGTHS = (360.0, 600.0, 713.0)
 ASYMMETRY = (0.729, 0.783, 0.799)
 
-# Doose et al. (2016), Icarus 270, 355: single scattering albedo above 200 km, read off Barnes et al.
-# (2018), Astron. J. 156, 247, figure 4. It begins at 500 nm.
+# Doose et al. (2016), Icarus 270, 355: single scattering albedo above 200 km, read off Barnes et
+# al. (2018), Astron. J. 156, 247, figure 4. It begins at 500 nm.
 ALBEDO_WAVELENGTHS = (500.0, 550.0, 600.0, 650.0, 700.0, 750.0, 800.0, 830.0)
 ALBEDO_ALOFT = (0.8438, 0.8773, 0.9012, 0.9173, 0.9285, 0.9339, 0.9356, 0.9348)
 # Above 80 km the haze falls off over 65 km (Tomasko et al. 2008).
@@ -77,7 +78,7 @@ def aggregate(wavelength, angles):
 
 
 def haze_phase(wavelength):
-    """Phase function of the haze, its mean cosine at most `ASYMMETRY`."""
+    """Phase function of the haze, whose mean cosine is at most `ASYMMETRY`."""
     phase = normalise(aggregate(wavelength, ANGLES), ANGLES)
     wanted = np.interp(wavelength, ASYMMETRY_WAVELENGTHS, ASYMMETRY)
     isotropic = max(1.0 - wanted / mean_cosine(phase, ANGLES), 0.0)
@@ -103,8 +104,8 @@ def albedos():
 def main():
     """Write the tables."""
     origin = [
-        "Doose et al. (2016), Icarus 270, 355, read off Barnes et al. (2018), Astron. J. 156, 247, figure",
-        "4; below 500 nm a guess, the parabola through 500, 550 and 600 nm.",
+        "Doose et al. (2016), Icarus 270, 355, read off Barnes et al. (2018), Astron. J. 156, 247,",
+        "figure 4; below 500 nm a guess, the parabola through 500, 550 and 600 nm.",
         "Computed by docs/derivations/titan_haze.py. Licence: published facts; cite the papers.",
     ]
     below, above = albedos()
@@ -122,8 +123,8 @@ def main():
         "titan_haze_phase.csv",
         [
             "Titan's haze: phase function [per sr], columns by wavelength [nm].",
-            "Aggregates of 3000 spheres of tholin of 0.05 um: Tomasko et al. (2008), Planet. Space Sci. 56,",
-            "669, appendix A, and an isotropic part in the blue, for mean cosines as in its table 1.",
+            "Aggregates of 3000 spheres of tholin of 0.05 um: Tomasko et al. (2008), Planet. Space",
+            "Sci. 56, 669, appendix A; an isotropic part for mean cosines as in its table 1.",
             "Computed by docs/derivations/titan_haze.py. Licence: this project's own.",
         ],
         ANGLES,
