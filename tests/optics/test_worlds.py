@@ -23,13 +23,12 @@ def aerosol(preset, name="aerosol"):
 
 
 # Hess et al. (1998), OPAC, at 80 % humidity and 550 nm: single scattering albedo, asymmetry, and
-# the exponent between 440 and 700 nm that its tables give. OPAC 4's desert has spheroids.
+# the exponent between 440 and 700 nm that its tables give.
 OPAC = {
     "earth-clear": (0.972, 0.709, 1.31),
     "earth-hazy": (0.892, 0.698, 1.35),
     "earth-urban": (0.817, 0.689, 1.34),
     "earth-maritime": (0.997, 0.772, 0.09),
-    "earth-desert-dust": (0.888, 0.729, 0.18),
 }
 
 
@@ -42,6 +41,27 @@ def test_aerosols_by_mie_theory_have_the_optics_that_opac_publishes(preset):
     assert integrate_phase(phase * NU)[0] == pytest.approx(asymmetry, abs=0.003)
     blue, red = aerosol_optical_depth(aerosol(preset), np.array([440.0, 700.0]))
     assert np.log(blue / red) / np.log(700.0 / 440.0) == pytest.approx(exponent, abs=0.03)
+
+
+def test_the_desert_table_of_opac_has_the_optics_that_opac_publishes():
+    """OPAC 4's desert has spheroids."""
+    changes = {
+        "aerosol.relative_extinction": "opac_desert",
+        "aerosol.single_scattering_albedo": "opac_desert",
+        "aerosol.phase.table": "opac_desert_phase",
+    }
+    medium = build_medium(load_preset("earth-desert-dust", changes), GREEN)
+    assert medium.scattering[2, 0] / medium.extinction[2, 0] == pytest.approx(0.888, abs=0.003)
+    assert integrate_phase(medium.phase[2] * NU)[0] == pytest.approx(0.729, abs=0.003)
+
+
+def test_desert_dust_absorbs_as_little_as_over_the_sahara():
+    """Kim et al. (2011), AERONET: single scattering albedo of 0.946 +- 0.005 at 550 nm."""
+    medium = build_medium(load_preset("earth-desert-dust"), np.array([440.0, 550.0, 675.0]))
+    blue, green, red = medium.scattering[2] / medium.extinction[2]
+    assert green == pytest.approx(0.946, abs=0.005)
+    # Iron oxides: most in the blue.
+    assert blue < green - 0.02 < red - 0.02
 
 
 def test_droplets_of_earth_have_the_aureole_that_one_asymmetry_cannot_give():
