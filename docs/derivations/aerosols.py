@@ -195,8 +195,8 @@ def main(names):
     if not names or "desert_dust" in names:
         origin = [
             *OPAC_ORIGIN[:2],
-            "Minerals with 0.36 of their imaginary refractive index, for the single scattering",
-            "albedo of 0.946 at 550 nm in Kim et al. (2011), Atmos. Chem. Phys. Discuss. 11, 20181.",
+            "Minerals with 0.36 of their imaginary index, for the single scattering albedo of",
+            "0.946 at 550 nm in Kim et al. (2011), Atmos. Chem. Phys. Discuss. 11, 20181.",
             SCRIPT,
         ]
         results = opac_mixture("desert", DESERT_ABSORPTION)
