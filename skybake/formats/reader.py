@@ -13,7 +13,7 @@ import numpy.typing as npt
 import OpenImageIO
 
 from skybake.errors import InputError
-from skybake.formats.hdr import RADIANCE_EFFICACY, read_header
+from skybake.formats.hdr import RADIANCE_EFFICACY, WHITE_LUMINANCE, read_header
 from skybake.formats.targets import is_utf8
 
 Pixels = npt.NDArray[np.float32]
@@ -154,6 +154,7 @@ def _radiance_attributes(path: Path) -> dict[str, Any]:
     try:
         header = read_header(path)
         exposure = float(header.get("EXPOSURE", "0"))
+        white = float(header.pop(WHITE_LUMINANCE, "0"))
         primaries = tuple(float(v) for v in header.get("PRIMARIES", "").split())
     except ValueError as error:
         raise InputError(f"{path}: EXPOSURE and PRIMARIES must be numbers, got {error}") from error
@@ -162,7 +163,9 @@ def _radiance_attributes(path: Path) -> dict[str, Any]:
     attributes: dict[str, Any] = dict(header)
     # Some programs write EXPOSURE=0 for an unknown exposure.
     if exposure > 0.0:
-        attributes["whiteLuminance"] = RADIANCE_EFFICACY / exposure
+        attributes[WHITE_LUMINANCE] = RADIANCE_EFFICACY / exposure
+    elif 0.0 < white < math.inf:
+        attributes[WHITE_LUMINANCE] = white
     if primaries:
         attributes["chromaticities"] = primaries
     return attributes
