@@ -14,6 +14,7 @@ import OpenImageIO
 
 from skybake.errors import InputError
 from skybake.formats.hdr import RADIANCE_EFFICACY, WHITE_LUMINANCE, read_header
+from skybake.formats.long_texts import joined
 from skybake.formats.targets import is_utf8
 
 Pixels = npt.NDArray[np.float32]
@@ -35,7 +36,7 @@ class ImageFile:
     width, height : int
         Its size. [pixel]
     attributes : dict
-        By the file's own names; of a Radiance picture also `chromaticities` and
+        By the file's own names, long texts in one; of a Radiance picture also `chromaticities` and
         `whiteLuminance` where its header implies them.
 
     Raises
@@ -144,6 +145,7 @@ def _open(path: Path) -> OpenImageIO.ImageInput:
 
 def _attributes(path: Path, source: OpenImageIO.ImageInput) -> dict[str, Any]:
     attributes: dict[str, Any] = {a.name: a.value for a in source.spec().extra_attribs}
+    attributes = joined(attributes)
     if source.format_name() == "hdr":
         attributes |= _radiance_attributes(path)
     return attributes

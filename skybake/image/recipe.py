@@ -15,7 +15,7 @@ HASH_ATTRIBUTE = "skybake:recipeHash"
 
 LONGEST_RECIPE = 4000
 """Length of a recipe's text in a file. OpenImageIO opens no Radiance picture with a hundred
-lines in its header, and FFmpeg 5.1 fails after a text of 8191 bytes. [character]"""
+lines in its header. [character]"""
 
 
 def map_recipe(planet: Planet, settings: MapSettings) -> dict[str, Any]:

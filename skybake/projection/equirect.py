@@ -51,7 +51,7 @@ def solid_angles(width: int, height: int, rows: str = "centres") -> Array:
     """
     if rows == "poles":
         step = _row_step(height, rows)
-        weight = np.sin(row_zeniths(height, rows)) * 2.0 * (1.0 - math.cos(step)) / step
+        weight = np.sin(row_zeniths(height, rows)) * 4.0 * math.sin(0.5 * step) ** 2 / step
         weight[[0, -1]] = _pole(step)[0]
         size: Array = 2.0 * math.pi / width * weight
         return size

@@ -49,6 +49,19 @@ class OctahedralChart(Chart):
         """Directions of the pixels in rows first..last."""
         return zenith_azimuth(_points(*self._plane(first, last)))
 
+    def places(self, vectors: Array) -> tuple[Array, Array]:
+        """Rows and columns, in pixels from the upper left corner, at which directions are shown.
+
+        Parameters
+        ----------
+        vectors : ndarray of float64, shape (..., 3)
+            Directions of any length but 0.
+        """
+        x, y, z = np.moveaxis(vectors / np.abs(vectors).sum(axis=-1, keepdims=True), -1, 0)
+        u = np.where(y < 0.0, np.copysign(1.0 - np.abs(z), x), x)
+        v = np.where(y < 0.0, np.copysign(1.0 - np.abs(x), z), z)
+        return 0.5 * (v + 1.0) * self.height, 0.5 * (u + 1.0) * self.width
+
     def footprints(self, first: int, last: int) -> Array:
         """Extents of pixels in zenith angle."""
         u, v = self._plane(first, last)
