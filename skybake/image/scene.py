@@ -119,17 +119,12 @@ class Scene:
         """
         lighting = self.settings.lighting
         true = self.planet.star.angular_radius
-        strength = lighting.sun_strength
-        radius = drawn_radius(lighting, true, strength * float(self.rgb_weights.sum(axis=0).max()))
-        if lighting.sun_size is None and not lighting.sun_soft and strength == 1.0:
-            return Disc(self.sky.skylight, self.sky.source)
-        return DrawnDisc(
-            self.sky.skylight,
-            self.sky.source,
-            angular_radius=radius,
-            is_soft=lighting.sun_soft,
-            strength=strength,
-        )
+        flux = lighting.sun_strength * float(self.rgb_weights.sum(axis=0).max())
+        radius = drawn_radius(lighting, true, flux)
+        skylight, source = self.sky.skylight, self.sky.source
+        if lighting.sun_size is None and not lighting.sun_soft:
+            return Disc(skylight, source)
+        return DrawnDisc(skylight, source, angular_radius=radius, is_soft=lighting.sun_soft)
 
     @cached_property
     def xyz_weights(self) -> Array:
@@ -236,12 +231,13 @@ class Scene:
                 cells.azimuth[part] + self.settings.view.rotation,
             )
             flux[part] = (light @ self.rgb_weights) * cells.solid_angle[part, None]
-        return flux
+        return self.settings.lighting.sun_strength * flux
 
     def sun_xyz(self) -> tuple[Array, Array]:
         """XYZ by the sun's disc, on a plane that faces it and on the horizontal. [lx]"""
         normal, horizontal = self.sun.irradiance_per_irradiance()
-        return normal @ self.xyz_weights, horizontal @ self.xyz_weights
+        weights = self.settings.lighting.sun_strength * self.xyz_weights
+        return normal @ weights, horizontal @ weights
 
     def sun_illuminance(self) -> tuple[float, float]:
         """Illuminance by the sun's disc, facing it and on the horizontal. [lx]"""

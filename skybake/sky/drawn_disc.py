@@ -1,4 +1,4 @@
-"""A disc that is drawn larger, softer or stronger than it is."""
+"""A disc that is drawn in another size than its own, or softer."""
 
 from __future__ import annotations
 
@@ -33,8 +33,6 @@ class DrawnDisc(Disc):
         [rad]
     is_soft : bool, optional
         Fade from the middle to the edge as (1 - x²)² instead of limb darkening.
-    strength : float, optional
-        Factor of its light.
     """
 
     def __init__(
@@ -44,12 +42,11 @@ class DrawnDisc(Disc):
         *,
         angular_radius: float,
         is_soft: bool = False,
-        strength: float = 1.0,
     ) -> None:
         super().__init__(skylight, source)
         self.angular_radius = angular_radius
         self._true = Disc(skylight, source)
-        self._is_soft, self._strength = is_soft, strength
+        self._is_soft = is_soft
 
     def radiance_per_irradiance(
         self, zenith: Array, distance: Array, _azimuth: Array | None = None
@@ -81,9 +78,8 @@ class DrawnDisc(Disc):
         """Factor of the bare radiance in what is visible, shape (wavelength,)."""
         normal, _ = self._true.irradiance_per_irradiance()
         share, _ = self._visible
-        return np.where(
-            share > 0.0, self._strength * normal / np.where(share > 0.0, share, 1.0), 0.0
-        )
+        is_visible = share > 0.0
+        return np.where(is_visible, normal / np.where(is_visible, share, 1.0), 0.0)
 
     @cached_property
     def _visible(self) -> tuple[Array, Array]:

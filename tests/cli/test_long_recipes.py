@@ -56,10 +56,39 @@ def test_attributes_that_no_radiance_header_has_room_for_are_refused(folder):
     assert list(folder.iterdir()) == []
 
 
+@pytest.mark.parametrize(
+    "options",
+    [
+        (),
+        ("--preset", "earth-volcanic", "--pixel", "float", "--compression", "piz"),
+        ("--preset", "mars", "--projection", "cubemap", "--cube-layout", "exr", "--size", "16"),
+        (
+            "--size",
+            "16",
+            "--lat",
+            "48.86",
+            "--lon",
+            "2.35",
+            "--time",
+            "2026-06-21T12:00Z",
+            "--projection",
+            "angular",
+        ),
+    ],
+)
+def test_ffmpeg_sees_the_light_of_a_map(folder, options):
+    assert invoke("render", *QUICK, *options, "-o", "a.exr").exit_code == 0
+    assert brightest_by_ffmpeg("a.exr") > 50
+
+
 def test_ffmpeg_sees_the_light_of_a_map_of_a_long_preset(long):
     assert invoke("render", *QUICK, "--preset", long, "-o", "a.exr").exit_code == 0
-    command = (program("ffmpeg"), "-v", "error", "-i", "a.exr", "-f", "rawvideo")
+    assert brightest_by_ffmpeg("a.exr") > 50
+
+
+def brightest_by_ffmpeg(file):
+    command = (program("ffmpeg"), "-v", "error", "-i", file, "-f", "rawvideo")
     process = subprocess.run(
         [*command, "-pix_fmt", "rgb24", "-"], capture_output=True, check=True, timeout=60
     )
-    assert np.frombuffer(process.stdout, np.uint8).max() > 50
+    return np.frombuffer(process.stdout, np.uint8).max()
