@@ -24,9 +24,7 @@ PICTURES = {
     "fisheye": LOW.image("fisheye", HEIGHT),
     "angular": LOW.image("angular", HEIGHT),
     "octahedral": LOW.image("octahedral", HEIGHT),
-    "cubemap --cube-layout vertical-cross": LOW.image(
-        "cubemap", HEIGHT // 4, layout="vertical-cross"
-    ),
+    "--cube-layout vertical-cross": LOW.image("cubemap", HEIGHT // 4, layout="vertical-cross"),
     "perspective --look 200,12 --fov 70deg": LOW.image(
         "perspective",
         (512, HEIGHT),
@@ -40,7 +38,7 @@ PICTURES = {
 }
 ROWS = (
     ("equirect", "cubemap --cube-layout cross"),
-    ("fisheye", "angular", "octahedral", "cubemap --cube-layout vertical-cross"),
+    ("fisheye", "angular", "octahedral", "--cube-layout vertical-cross"),
     tuple(name for name in PICTURES if name.startswith("perspective")),
 )
 

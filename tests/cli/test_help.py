@@ -111,7 +111,9 @@ def test_defaults_are_those_of_the_engine():
     assert len(shared) == 10
     shown = {p.name: p.show_default for p in render.params if isinstance(p.show_default, str)}
     for key in engine.keys() & shown.keys():
-        assert shown[key] == engine[key]
+        value = engine[key]
+        if value is not None:
+            assert shown[key] == (f"{value:g}" if isinstance(value, float) else value)
 
 
 @pytest.mark.parametrize(("path", "command"), COMMANDS)
