@@ -118,13 +118,15 @@ class Scene:
             If it is to be soft and no such disc fits half floats.
         """
         lighting = self.settings.lighting
-        true = self.planet.star.angular_radius
-        flux = lighting.sun_strength * float(self.rgb_weights.sum(axis=0).max())
-        radius = drawn_radius(lighting, true, flux)
-        skylight, source = self.sky.skylight, self.sky.source
+        source = self.sky.source
         if lighting.sun_size is None and not lighting.sun_soft:
-            return Disc(skylight, source)
-        return DrawnDisc(skylight, source, angular_radius=radius, is_soft=lighting.sun_soft)
+            return Disc(self.sky.skylight, source)
+        flux = lighting.sun_strength * float(self.rgb_weights.sum(axis=0).max())
+        # Before the atmosphere is solved for, which takes long.
+        radius = drawn_radius(lighting, source.angular_radius, flux)
+        return DrawnDisc(
+            self.sky.skylight, source, angular_radius=radius, is_soft=lighting.sun_soft
+        )
 
     @cached_property
     def xyz_weights(self) -> Array:

@@ -16,7 +16,7 @@ SOFT_LARGEST = 50000.0
 
 
 def drawn_radius(lighting: Lighting, true_radius: float, flux: float) -> float:
-    """Angular radius by which a map draws the disc. [rad]
+    """Angular radius of a disc that is drawn in another size, or soft. [rad]
 
     Parameters
     ----------
@@ -36,8 +36,6 @@ def drawn_radius(lighting: Lighting, true_radius: float, flux: float) -> float:
     """
     if lighting.sun_size is not None:
         return 0.5 * lighting.sun_size
-    if not lighting.sun_soft:
-        return true_radius
     sine = math.sqrt(SOFT_PEAK * flux / (math.pi * SOFT_LARGEST))
     if sine > math.sin(0.5 * LARGEST_SUN):
         needed = f"{math.degrees(2.0 * math.asin(sine)):.0f}deg" if sine < 1.0 else "more than all"
