@@ -189,9 +189,9 @@ def _charts(canvas: Canvas, pixels: Pixels) -> Iterator[tuple[Chart, Pixels]]:
         chart = part.chart
         rows = slice(part.row, part.row + chart.height)
         here = pixels[rows, part.column : part.column + chart.width]
-        if part.flip == "rows":
+        if part.flip in {"rows", "both"}:
             here = here[::-1]
-        elif part.flip == "columns":
+        if part.flip in {"columns", "both"}:
             here = here[:, ::-1]
         yield chart, here
 

@@ -176,6 +176,7 @@ def bake_scene(
             pixel=pixel,
             compression=encoding.compression,
             envmap=raster.canvas.envmap,
+            states_exposure=not encoding.omit_exposure,
             attributes=attributes,
         )
         for path, raster in rasters.items()

@@ -93,9 +93,9 @@ def _taps(part: Part, sample: Index, row: Array, column: Array) -> _Taps:
         left, right = (start % chart.width, (start + 1) % chart.width), column - 0.5 - start
     else:
         left, right = _neighbours(column, chart.width)
-    if part.flip == "rows":
+    if part.flip in {"rows", "both"}:
         top = (chart.height - 1 - top[0], chart.height - 1 - top[1])
-    elif part.flip == "columns":
+    if part.flip in {"columns", "both"}:
         left = (chart.width - 1 - left[0], chart.width - 1 - left[1])
     return _Taps(
         sample,

@@ -17,6 +17,9 @@ from skybake.projection.equirect import Equirect
 # Values of OpenEXR's `envmap`, as OpenImageIO has them under `textureformat`.
 _LATLONG, _CUBE = "LatLong Environment", "CubeFace Environment"
 
+_EDGES = {"cross": 4, "vertical-cross": 3}
+"""How many edges of its faces a cubemap is wide, if more than one."""
+
 _ANGLES = {
     "fov_deg": "fov",
     "look_azimuth_deg": "azimuth",
@@ -58,9 +61,13 @@ def _by_recipe(shown: Mapping[str, Any], name: str, width: int, height: int) -> 
         is_face = face is not None and width == height
         return whole(FaceChart(face, width), face) if face is not None and is_face else None
     try:
-        options = {own: math.radians(shown[key]) for key, own in _ANGLES.items() if key in shown}
+        options: dict[str, Any] = {
+            own: math.radians(shown[key]) for key, own in _ANGLES.items() if key in shown
+        }
         if shown.get("cube_layout") is not None:
             options["layout"] = shown["cube_layout"]
+        if "equirect_rows" in shown:
+            options["rows"] = shown["equirect_rows"]
         projection = find_projection(shown["projection"], None, options)
     except (InputError, TypeError, ValueError, OverflowError):
         return None
@@ -81,7 +88,7 @@ def _canvas(projection: Projection | None, width: int, height: int) -> Canvas | 
     """Return the layout of a picture of some size, if a projection has one of that shape."""
     if projection is None:
         return None
-    edge = width // 4 if getattr(projection, "layout", "") == "cross" else width
+    edge = width // _EDGES.get(getattr(projection, "layout", ""), 1)
     sizes = {"width": width, "height": height, "edge": edge}
     known = {one.name for one in fields(projection)}  # type: ignore[arg-type]
     sizes = {key: value for key, value in sizes.items() if key in known}

@@ -143,7 +143,9 @@ def _header(products: Products) -> SequenceHeader:
         projection=settings.view.projection.name,
         colorspace=settings.encoding.colorspace,
         sun_disc=settings.lighting.sun_disc,
-        sun_angular_diameter_deg=math.degrees(2.0 * planet.star.angular_radius),
+        sun_angular_diameter_deg=math.degrees(
+            settings.lighting.sun_size or 2.0 * planet.star.angular_radius
+        ),
         recipe={"map": _common(maps), "preset": _common(worlds), "command": list(products.command)},
         fps=products.fps,
     )
