@@ -1,9 +1,10 @@
-"""Quantities as users type them, with or without a unit: "5deg", "2km", "30000ft", "1h30min"."""
+"""Quantities as users type them, "5deg", "2km", "30000ft", "1h30min", and as files state them."""
 
 from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 
 from skybake.errors import InputError
 
@@ -14,6 +15,8 @@ _RADIANS = {
     "arcsec": math.pi / 648_000.0,
 }
 _KILOMETRES = {"m": 1e-3, "km": 1.0, "ft": 0.3048e-3, "mi": 1.609344}
+
+_DIGITS = 17  # of a double
 
 _SECONDS = {"s": 1.0, "min": 60.0, "h": 3600.0, "d": 86_400.0}
 
@@ -110,6 +113,27 @@ def parse_duration(text: str) -> float:
             f"got {text!r}"
         )
     return value
+
+
+def degrees(angle: float) -> float:
+    """Return an angle in degrees, in the fewest digits that mean the same angle.
+
+    By `math.degrees` the radians of 30 deg are 29.999999999999996 deg.
+    """
+    return _shortest(math.degrees(angle), lambda value: math.radians(value) == angle)
+
+
+def metres(length: float) -> float:
+    """Return a length in metres of one in kilometres, in the fewest digits that mean the same."""
+    return _shortest(length * 1e3, lambda value: value * 1e-3 == length or value / 1e3 == length)
+
+
+def _shortest(exact: float, is_same: Callable[[float], bool]) -> float:
+    for digits in range(1, _DIGITS):
+        short = float(f"{exact:.{digits}g}")
+        if is_same(short):
+            return short
+    return exact
 
 
 def _parse(text: str, units: dict[str, float], *, bare: str, quantity: str, example: str) -> float:

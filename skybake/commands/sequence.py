@@ -20,7 +20,13 @@ from skybake.commands.options.emit import (
     is_asked,
 )
 from skybake.commands.options.maps import map_needs, map_options, map_settings
-from skybake.commands.options.observer import altitude_option, sun_azimuth_option, sun_option
+from skybake.commands.options.observer import (
+    altitude_option,
+    sun_azimuth_option,
+    sun_distance_needs,
+    sun_distance_option,
+    sun_option,
+)
 from skybake.commands.options.previews import BESIDE, preview_needs, sequence_preview_options
 from skybake.commands.options.products import product_options, products_from_options
 from skybake.commands.options.rules import Needs, check_needs, usage_faults
@@ -44,6 +50,7 @@ SOME_FAILED = 3
 @sun_option(is_range=True)
 @sun_azimuth_option(is_range=True)
 @span_options
+@sun_distance_option()
 @altitude_option(is_range=True)
 @click.option(
     "--frames",
@@ -136,6 +143,7 @@ def sequence(**options: Any) -> None:
     check_needs(
         context,
         span_needs(context),
+        sun_distance_needs(options, is_timed=options["start"] is not None, time="--from and --to"),
         map_needs(options),
         preview_needs(options),
         emit_needs(options),
@@ -210,6 +218,7 @@ def _plan_from_options(context: click.Context) -> Plan:
             sun_elevation=options["sun_elevation"] if times is None else None,
             sun_azimuth=options["sun_azimuth"] if times is None else None,
             altitude=options["altitude"],
+            sun_distance=options["sun_distance"],
             changes=replace(changes, values=ranges),
             settings=settings,
             exposure_curve=options["exposure_curve"],

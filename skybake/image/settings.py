@@ -12,6 +12,7 @@ from skybake.errors import InputError
 from skybake.formats.compression import parse_compression
 from skybake.projection import Equirect, Projection, find_projection
 from skybake.sky.sky import METHODS
+from skybake.units import degrees, metres
 
 SUN_DISCS = ("include", "exclude", "only")
 PIXELS = ("auto", "half", "float")
@@ -43,6 +44,8 @@ class Lighting:
         Geometric elevation of the sun's centre at the observer. [rad]
     sun_azimuth : float
         Compass bearing of the sun: 0 = north, clockwise. [rad]
+    sun_distance : float or None
+        Of the sun; None leaves it where the preset has it. [au]
     sun_disc : {"include", "exclude", "only"}
         Whether the map holds the sun's disc, or nothing else.
     method : {"full", "hillaire", "march"}
@@ -51,6 +54,7 @@ class Lighting:
 
     sun_elevation: float = math.radians(30.0)
     sun_azimuth: float = math.pi
+    sun_distance: float | None = None
     sun_disc: str = "include"
     method: str = "full"
 
@@ -127,9 +131,10 @@ class MapSettings:
         """All that decides the pixels, in human-readable units, fit for JSON."""
         lighting, encoding = self.lighting, self.encoding
         return {
-            "sun_elevation_deg": math.degrees(lighting.sun_elevation),
-            "sun_azimuth_deg": math.degrees(lighting.sun_azimuth),
-            "altitude_m": self.view.altitude * 1e3,
+            "sun_elevation_deg": degrees(lighting.sun_elevation),
+            "sun_azimuth_deg": degrees(lighting.sun_azimuth),
+            **({} if lighting.sun_distance is None else {"sun_distance_au": lighting.sun_distance}),
+            "altitude_m": metres(self.view.altitude),
             **self.view.projection.recipe(),
             "colorspace": encoding.colorspace,
             "white_luminance_cd_m2": encoding.white_luminance,

@@ -34,6 +34,7 @@ PIXELS = ("auto", "half", "float")
 SUN_DISCS = ("include", "exclude", "only")
 METHODS = ("full", "hillaire", "march")
 VIEWS = ("aces2", "aces1")
+DAYS_FROM_TODAY = {"yesterday": -1, "today": 0, "tomorrow": 1}
 
 Paths = TypeVar("Paths", Path | None, tuple[Path, ...])
 
@@ -42,6 +43,9 @@ _RIGHT_ANGLE = math.pi / 2 + 1e-9
 
 _MOST_TURNS = 1000
 _FASTEST = 1000.0
+
+# As of star.distance_au in presets. [au]
+_NEAREST, _FARTHEST = 1e-3, 1e5
 
 # Click shows the message of a click.BadParameter, but only the value of a ValueError.
 
@@ -86,12 +90,29 @@ def solar_longitude(text: str) -> float:
     return angle
 
 
-def day(text: str) -> date:
-    """Read a date such as ``2026-06-21``."""
+def sun_distance(text: str) -> float | str:
+    """Read a distance in au, ``mean`` or ``date``."""
+    if text in {"mean", "date"}:
+        return text
+    try:
+        distance = float(text.strip().casefold().removesuffix("au"))
+    except ValueError:
+        distance = math.nan
+    if not _NEAREST <= distance <= _FARTHEST:
+        raise click.BadParameter(
+            f"must be mean, date or a number of au from {_NEAREST:g} to {_FARTHEST:g}, got {text!r}"
+        )
+    return distance
+
+
+def day(text: str) -> date | str:
+    """Read a date such as ``2026-06-21``, or a key of `DAYS_FROM_TODAY`."""
+    if text.lower() in DAYS_FROM_TODAY:
+        return text.lower()
     if re.fullmatch(r"\d{4}-\d\d-\d\d", text, re.ASCII):
         with suppress(ValueError):
             return date.fromisoformat(text)
-    raise click.BadParameter(f"must be a date such as 2026-06-21, got {text!r}")
+    raise click.BadParameter(f"must be a date such as 2026-06-21, or today, got {text!r}")
 
 
 def length(text: str) -> float:
