@@ -106,7 +106,7 @@ SOME_FAILED = 3
     "--dask",
     metavar="ADDRESS",
     help="Bake on the workers of a Dask scheduler, such as tcp://host:8786; "
-    "needs pip install 'skybake[dask]'.",
+    "needs pip install distributed.",
 )
 @emit_options
 @click.option("--dry-run", is_flag=True, help="Print the frames and bake nothing.")

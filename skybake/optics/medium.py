@@ -84,9 +84,8 @@ def build_medium(planet: Planet, wavelengths: Array, bandwidth: float = BANDWIDT
         not normalised.
     """
     r_top = planet.radius + planet.atmosphere_top
-    albedo = eval_spectrum(planet.ground.albedo, wavelengths)
     if not planet.constituents:
-        return _vacuum(planet.radius, r_top, albedo)
+        return _vacuum(planet.radius, r_top, eval_spectrum(planet.ground.albedo, wavelengths))
     altitude = altitude_nodes(planet.radius, r_top)
     density = np.stack([eval_profile(c.profile, altitude) for c in planet.constituents], axis=1)
     # Kernels take the density as linear between nodes, so the trapezoid is its exact column.
@@ -111,7 +110,7 @@ def build_medium(planet: Planet, wavelengths: Array, bandwidth: float = BANDWIDT
         scattering=np.stack(scattering),
         extinction=np.stack(scattering) + np.stack(absorption),
         phase=np.stack(phase),
-        ground_albedo=albedo,
+        ground_albedo=eval_spectrum(planet.ground.albedo, wavelengths),
     )
 
 

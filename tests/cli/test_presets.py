@@ -250,7 +250,7 @@ main()
 def test_without_matplotlib_drawing_is_refused_in_one_line(tmp_path):
     status, output, errors = run("presets", "plot", "mars", code=WITHOUT, cwd=tmp_path)
     assert (status, output) == (1, "")
-    assert errors == "skybake: plot: needs matplotlib; try pip install 'skybake[plot]'\n"
+    assert errors == "skybake: plot: needs matplotlib; try pip install matplotlib\n"
     assert listing(tmp_path) == []
 
 

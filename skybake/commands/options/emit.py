@@ -147,7 +147,7 @@ def _word(option: str, name: str, value: Any) -> str:
     # Flags, and options whose value was omitted, have no text.
     if not isinstance(value, str):
         return option
-    is_file = name == "preset" and (value.endswith(".toml") or os.sep in value)
+    is_file = name == "preset" and (value.lower().endswith(".toml") or os.sep in value)
     if is_file or name in _PATHS:
         value = str(Path(value).absolute())
     elif name in {"changes", "ground_albedo"}:

@@ -33,7 +33,8 @@ map_options = options_together(
         metavar="WxH|EDGE",
         type=values.size,
         show_default="2048x1024, 1024 for a cubemap's face or a fisheye, 1920x1080 for perspective",
-        help="Width and height, 2:1 for an equirect map, or edge of a cubemap's face or a fisheye.",
+        help="Width and height, 2:1 for an equirect map, whose width is enough, or edge of a "
+        "cubemap's face or a fisheye.",
     ),
     click.option(
         "--fov",

@@ -44,6 +44,8 @@ _RIGHT_ANGLE = math.pi / 2 + 1e-9
 _MOST_TURNS = 1000
 _FASTEST = 1000.0
 
+_PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".gif", ".tif", ".tiff")
+
 # As of star.distance_au in presets. [au]
 _NEAREST, _FARTHEST = 1e-3, 1e5
 
@@ -131,7 +133,9 @@ def altitude(text: str) -> float:
 def size(text: str) -> tuple[int, ...]:
     """Read width and height, or an edge: ``4096x2048``, ``1024``."""
     if not re.fullmatch(r"\d{1,9}(x\d{1,9})?", text, re.ASCII):
-        raise click.BadParameter(f"must be such as 4096x2048, or 1024 for a cubemap, got {text!r}")
+        raise click.BadParameter(
+            f"must be such as 4096x2048, or 1024 for a map 2:1 or a cubemap, got {text!r}"
+        )
     return tuple(int(number) for number in text.split("x"))
 
 
@@ -194,7 +198,7 @@ def ramp(read: Callable[[str], float]) -> Callable[[str], Ramp]:
         first, dots, last = text.partition("..")
         found = Ramp(read(first), read(last if dots else first))
         unit = last.lstrip("+-.0123456789 ")
-        # In 5..10km users mean kilometres, but a bare 5 is metres.
+        # In 1..2rad users mean radians, but a bare 1 is in degrees.
         if unit and first.strip()[-1].isdigit() and read(first + unit) != found.first:
             raise click.BadParameter(f"must have a unit on both sides, got {text}")
         return found
@@ -243,12 +247,16 @@ def with_suffix(
 ) -> Callable[[click.Context, click.Parameter, Paths], Paths]:
     """Return a callback of an option that checks the suffix of its path or paths."""
 
+    def is_map(path: Path) -> bool:
+        return ".exr" in suffixes and path.suffix.lower() in _PICTURES
+
     def check(context: click.Context, option: click.Parameter, value: Paths) -> Paths:
         for path in value if isinstance(value, tuple) else (value,):
             if path is not None and path.suffix.lower() not in suffixes:
                 known = " or ".join(suffixes)
+                hint = "; a picture to look at is written by --preview" if is_map(path) else ""
                 raise click.BadParameter(
-                    f"{path}: suffix must be {known}, got {path.suffix!r}", context, option
+                    f"{path}: suffix must be {known}, got {path.suffix!r}{hint}", context, option
                 )
         return value
 
@@ -257,7 +265,7 @@ def with_suffix(
 
 def _hemisphere(text: str, positive: str, negative: str) -> float:
     """Read an angle that may end in the letter of a hemisphere instead of having a sign. [rad]"""
-    letter = text.strip()[-1:]
+    letter = text.strip()[-1:].upper()
     if letter not in (positive, negative):
         return _parse(text, parse_angle)
     angle = _parse(text.strip()[:-1], parse_angle)
