@@ -14,8 +14,6 @@ _RADIANS = {
     "arcmin": math.pi / 10_800.0,
     "arcsec": math.pi / 648_000.0,
     "°": math.pi / 180.0,
-    "′": math.pi / 10_800.0,
-    "″": math.pi / 648_000.0,
 }
 _KILOMETRES = {"m": 1e-3, "km": 1.0, "ft": 0.3048e-3, "mi": 1.609344}
 
@@ -23,7 +21,7 @@ _DIGITS = 17  # of a double
 
 _SECONDS = {"s": 1.0, "min": 60.0, "h": 3600.0, "d": 86_400.0}
 
-_QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-zA-Z°′″]*)", re.ASCII)
+_QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-zA-Z°]*)", re.ASCII)
 _DURATION_PART = r"([0-9]+\.?[0-9]*|\.[0-9]+)(s|min|h|d)"
 
 # A mega, a mile or a nautical mile rather than a metre.
@@ -36,8 +34,8 @@ def parse_angle(text: str) -> float:
     Parameters
     ----------
     text : str
-        A number and a unit: deg, rad, arcmin or arcsec, or the signs of degrees, minutes
-        and seconds of arc; a bare number is in degrees. Units may be in capitals.
+        A number and a unit: deg, rad, arcmin or arcsec, or the sign of degrees; a
+        bare number is in degrees. Units may be in capitals.
 
     Returns
     -------

@@ -23,8 +23,6 @@ from skybake.units import degrees, metres, parse_angle, parse_duration, parse_le
         (" .5deg ", math.radians(0.5)),
         ("5°", math.radians(5.0)),
         ("-5 °", math.radians(-5.0)),
-        ("30′", math.radians(0.5)),
-        ("960″", math.radians(960.0 / 3600.0)),
         ("5DEG", math.radians(5.0)),
         ("0.1Rad", 0.1),
     ],

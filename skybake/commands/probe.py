@@ -21,6 +21,7 @@ from skybake.commands.options.observer import (
 from skybake.commands.options.rules import check_needs
 from skybake.commands.options.times import moment_from_options, moment_needs, moment_options
 from skybake.commands.options.world import world_from_options, world_options
+from skybake.commands.printing.notices import warn
 
 _MOST_WAVELENGTHS = 128
 
@@ -113,6 +114,9 @@ def probe(**options: Any) -> None:
     from skybake.formats.whole_files import replace_when_whole
     from skybake.image.sun_distance import sun_distance
     from skybake.inspect.probe import default_directions, probe, read_directions
+    from skybake.optics.medium import build_medium
+    from skybake.sky.closure import closure_warning
+    from skybake.sky.sky import WAVELENGTHS
 
     planet = world_from_options(context)
     sun_elevation = options["sun_elevation"] if moment is None else moment.sun_elevation
@@ -127,6 +131,12 @@ def probe(**options: Any) -> None:
         text = input_files.read_text(source, str(source), input_files.LARGEST_DIRECTIONS)
         directions = read_directions(str(source), io.StringIO(text, newline=""))
     wavelengths = options["wavelengths"]
+    if options["method"] == "hillaire":
+        warning = closure_warning(
+            build_medium(planet, np.array(planet.wavelengths or WAVELENGTHS, dtype=float))
+        )
+        if warning is not None:
+            warn(warning)
     text = probe(
         planet,
         directions,

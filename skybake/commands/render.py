@@ -24,7 +24,7 @@ from skybake.commands.options.rules import check_needs
 from skybake.commands.options.times import moment_from_options, moment_needs, moment_options
 from skybake.commands.options.world import world_from_options, world_options
 from skybake.commands.printing import render_summary
-from skybake.commands.printing.notices import announce, notice
+from skybake.commands.printing.notices import announce, notice, warn
 from skybake.commands.printing.progress import map_progress
 
 
@@ -105,6 +105,8 @@ def render(**options: Any) -> None:
             progress=progress,
             notice=None if quiet else notice,
         )
+    for warning in baked.warnings:
+        warn(warning)
     seconds = time.perf_counter() - started
     if options["as_json"]:
         render_summary.print_json(baked, planet, settings, seconds, moment)

@@ -163,6 +163,7 @@ def sequence(**options: Any) -> None:
         return
     products = products_from_options(context, plan)
     result = _bake(plan, part, products, options)
+    sequence_summary.print_warnings(result)
     if result.failures:
         sequence_summary.print_failures(result, openjd=options["style"] == "openjd")
     written = _write_products(products, result)

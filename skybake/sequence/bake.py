@@ -8,6 +8,7 @@ from typing import Literal
 
 from skybake.sequence.dask import dask_pool
 from skybake.sequence.frame import PreviewSettings
+from skybake.sequence.pixel import common_pixel
 from skybake.sequence.plan import Plan
 from skybake.sequence.pool import Run, local_pool
 from skybake.sequence.products import Products
@@ -147,7 +148,7 @@ def frame_pool(
 def _preview_settings(
     plan: Plan, products: Products | None, view: str, ev: PreviewEv
 ) -> PreviewSettings:
-    """How frames are shown; of a part of a sequence as all of it would be."""
+    """How frames are stored and shown; of a part of a sequence as all of it would be."""
     widths = () if products is None else products.thumbnail_widths
     has_pictures = bool(widths) or any(frame.preview is not None for frame in plan.frames)
     follows_map = ev == "auto" and plan.exposure_curve is not None
@@ -158,4 +159,5 @@ def _preview_settings(
         ev=None if isinstance(ev, str) else ev,
         follows_map=follows_map,
         thumbnail_widths=widths,
+        pixel=common_pixel(plan),
     )

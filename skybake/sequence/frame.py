@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.baking.paths import map_paths
+from skybake.baking.pixel_type import PixelType
 from skybake.baking.write import bake_scene
 from skybake.colour.exposure import ev_from_luminance
 from skybake.errors import InputError
@@ -41,12 +42,15 @@ class PreviewSettings:
         Without `ev`, show maps as their own exposure has them.
     thumbnail_widths : tuple of int
         Of the thumbnails of each frame. [pixel]
+    pixel : {"half", "float"} or None
+        What the maps' pixel type auto stands for; None decides it by each frame.
     """
 
     view: str = "aces2"
     ev: float | None = None
     follows_map: bool = False
     thumbnail_widths: tuple[int, ...] = ()
+    pixel: PixelType | None = None
 
 
 @dataclass(frozen=True)
@@ -69,6 +73,8 @@ class FrameOutcome:
         Exposure value of its picture, if that is known.
     thumbnails : mapping of int to ndarray of uint8
         Code values of sRGB, shape (width // 2, width, 3), by their widths.
+    warnings : tuple of str
+        As of `skybake.baking.Baked`; none of a frame that was found.
     """
 
     number: int
@@ -78,6 +84,7 @@ class FrameOutcome:
     sha256: tuple[str, ...]
     ev: float | None
     thumbnails: Mapping[int, npt.NDArray[np.uint8]]
+    warnings: tuple[str, ...] = ()
 
 
 def finish_frame(
@@ -113,6 +120,7 @@ def finish_frame(
     is_new = found is None
     pipeline.workers.check()
     files = map_paths(frame.output, frame.settings)
+    warnings: tuple[str, ...] = ()
     if found is None:
         with WholeFiles() as whole:
             baked = bake_scene(
@@ -123,9 +131,11 @@ def finish_frame(
                 preview_view=previews.view,
                 attributes=frame.attributes,
                 files=whole,
+                pixel=work.pixel,
             )
             digests = {path: file_sha256(whole.written(path)) for path in frame.files()}
             write_digests(whole, frame.output, work.claim, digests)
+        warnings = baked.warnings
         # As read from its files if they are found later.
         light = light_from_attributes(attributes_from_light(baked))
     else:
@@ -140,6 +150,7 @@ def finish_frame(
         sha256=tuple(digests[path] for path in files),
         ev=work.ev if frame.preview is not None else None,
         thumbnails={width: work.thumbnail(width) for width in previews.thumbnail_widths},
+        warnings=warnings,
     )
 
 
@@ -168,10 +179,18 @@ class _Work:
             return ev_from_luminance(self._frame.settings.encoding.white_luminance)
         return scene_ev(self.scene)
 
+    @property
+    def pixel(self) -> PixelType | None:
+        """What the frame's pixel type auto stands for, if that is decided."""
+        return self._previews.pixel if self._frame.settings.encoding.pixel == "auto" else None
+
     @cached_property
     def claim(self) -> str:
         """What the maps are to hold, see `claim_of`."""
-        return claim_of(recipe_hash(self._planet, self._frame.settings), self._frame.attributes)
+        decided = {} if self.pixel is None else {"pixel": self.pixel}
+        return claim_of(
+            recipe_hash(self._planet, self._frame.settings), {**self._frame.attributes, **decided}
+        )
 
     def found(self) -> tuple[Light, dict[Path, str]] | None:
         """Return light and digests of the files if they are as this frame's were written."""

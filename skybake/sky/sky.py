@@ -15,6 +15,7 @@ from skybake.optics.spectrum import limb_darkening, star_at, star_irradiance
 from skybake.preset import Planet, Star, load_preset
 from skybake.scattering.atmosphere import is_stored, load_atmosphere
 from skybake.scattering.tables import Atmosphere
+from skybake.sky.closure import check_closure
 from skybake.sky.observer import Observer
 from skybake.sky.single import SingleSkylight
 from skybake.sky.skylight import Skylight
@@ -153,5 +154,13 @@ class Sky:
 
     @cached_property
     def atmosphere(self) -> Atmosphere:
-        """The tables of the atmosphere, which depend neither on the observer nor on the sun."""
+        """The tables of the atmosphere, which depend neither on the observer nor on the sun.
+
+        Raises
+        ------
+        UnsolvableError
+            If the atmosphere is beyond what the method can do.
+        """
+        if self.method == "hillaire":
+            check_closure(self.medium)
         return load_atmosphere(self.medium, self.table_method, self.workers)

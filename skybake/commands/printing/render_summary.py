@@ -61,6 +61,7 @@ def result(
         "colorspace": settings.encoding.colorspace,
         "pixel": baked.pixel,
         "clamped": baked.clamped,
+        "warnings": list(baked.warnings),
         "preview": None if baked.preview is None else str(baked.preview),
         "preview_ev": baked.preview_ev,
         "seconds": round(seconds, 3),
