@@ -50,7 +50,7 @@ from skybake.commands.printing.progress import map_progress
 def render(**options: Any) -> None:
     """Bake a sky map.
 
-    Angles are 5deg, 0.1rad, 30arcmin or bare degrees; lengths 2km, 1500m, 30000ft or bare metres.
+    Angles are 5deg, 0.1rad, 30arcmin or bare degrees; lengths 2km, 1500m or 30000ft.
     +Y is up and -Z north; azimuths are compass bearings, 0 = north, clockwise. The middle of an
     equirect map faces south, where the sun is by default; its left half is the east.
 

@@ -43,7 +43,10 @@ def test_json_says_what_was_baked(folder):
     assert told["clamped"] == 0
     assert (told["preview"], told["preview_ev"]) == (None, None)
     assert 0.0 < told["seconds"] < 300.0
-    assert len(told) == 15
+    assert told["sun_distance_au"] == 1.0
+    assert told["sun_angular_diameter_deg"] == pytest.approx(0.5329, abs=1e-4)
+    assert told["warnings"] == []
+    assert len(told) == 18
 
 
 def test_the_file_carries_what_json_says():

@@ -41,9 +41,8 @@ def sun_distance_option() -> Decorator:
         "--sun-distance",
         metavar="AU|mean|date",
         type=values.sun_distance,
-        show_default="date with a time, else mean",
         help="How far the sun is, which sets its light and the size of its disc: in au, the "
-        "preset's mean, or as on the date.",
+        "preset's mean, or as on the date, which is the default with a time.",
     )
 
 

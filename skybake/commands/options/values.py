@@ -196,14 +196,21 @@ def ramp(read: Callable[[str], float]) -> Callable[[str], Ramp]:
         if "..." in text:
             raise click.BadParameter(f"must have two dots between two values, got {text}")
         first, dots, last = text.partition("..")
-        found = Ramp(read(first), read(last if dots else first))
         unit = last.lstrip("+-.0123456789 ")
         # In 1..2rad users mean radians, but a bare 1 is in degrees.
-        if unit and first.strip()[-1].isdigit() and read(first + unit) != found.first:
+        if unit and first.strip()[-1:].isdigit() and not _is_same(read, first, first + unit):
             raise click.BadParameter(f"must have a unit on both sides, got {text}")
-        return found
+        return Ramp(read(first), read(last if dots else first))
 
     return read_ramp
+
+
+def _is_same(read: Callable[[str], float], text: str, other: str) -> bool:
+    """Whether two texts mean the same; one that means nothing does not."""
+    try:
+        return read(text) == read(other)
+    except click.BadParameter:
+        return False
 
 
 _NUMBER = r"[+-]?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?"
