@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Literal
 
@@ -15,7 +14,6 @@ _FEATURES: tuple[Callable[[Frame], float], ...] = (
     lambda frame: frame.settings.lighting.sun_elevation,
     lambda frame: frame.settings.encoding.white_luminance,
     lambda frame: frame.settings.view.altitude,
-    lambda frame: frame.settings.lighting.sun_distance or math.inf,
     lambda frame: frame.world,
 )
 
