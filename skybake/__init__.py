@@ -56,7 +56,15 @@ if TYPE_CHECKING:
         load_preset,
         preset_names,
     )
-    from skybake.projection import Cubemap, Equirect, Fisheye, Perspective, Projection
+    from skybake.projection import (
+        Angular,
+        Cubemap,
+        Equirect,
+        Fisheye,
+        Octahedral,
+        Perspective,
+        Projection,
+    )
     from skybake.sequence.bake import bake_sequence
     from skybake.sequence.exposure_curve import ExposureCurve
     from skybake.sequence.frame import FrameOutcome
@@ -70,6 +78,7 @@ __all__ = [
     "SITES",
     "Absorber",
     "Aerosol",
+    "Angular",
     "ArgumentError",
     "Baked",
     "CancelledError",
@@ -96,6 +105,7 @@ __all__ = [
     "Lighting",
     "MapSettings",
     "Moment",
+    "Octahedral",
     "OutputError",
     "Override",
     "Perspective",
@@ -139,6 +149,7 @@ __all__ = [
 _HOMES = {
     "Absorber": "skybake.preset",
     "Aerosol": "skybake.preset",
+    "Angular": "skybake.projection",
     "ArgumentError": "skybake.errors",
     "Baked": "skybake.baking",
     "CancelledError": "skybake.errors",
@@ -165,6 +176,7 @@ _HOMES = {
     "Lighting": "skybake.image.settings",
     "MapSettings": "skybake.image.settings",
     "Moment": "skybake.ephemeris.moment",
+    "Octahedral": "skybake.projection",
     "OutputError": "skybake.errors",
     "Override": "skybake.preset",
     "Perspective": "skybake.projection",

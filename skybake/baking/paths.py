@@ -38,9 +38,13 @@ def default_path(planet: Planet, settings: MapSettings) -> Path:
         f"sun{f'{math.degrees(lighting.sun_elevation):+06.2f}'.lstrip('+')}deg",
         _bearing(lighting.sun_azimuth),
         "" if lighting.sun_distance is None else f"{lighting.sun_distance:.4f}au",
+        _rotation(view.rotation),
         f"{view.altitude * 1e3:g}m" if view.altitude > 0.0 else "",
         lighting.method if lighting.method != PLAIN_LIGHTING.method else "",
         _DISCS[lighting.sun_disc],
+        "" if lighting.sun_size is None else f"size{math.degrees(lighting.sun_size):g}deg",
+        "soft" if lighting.sun_soft else "",
+        f"strength{lighting.sun_strength:g}" if lighting.sun_strength != 1.0 else "",
         encoding.colorspace if encoding.colorspace != PLAIN_ENCODING.colorspace else "",
         _scale(encoding),
         "clamped" if encoding.clamp_negative else "",
@@ -71,6 +75,11 @@ def _changes_name(changes: Mapping[str, Any]) -> str:
 def _bearing(azimuth: float) -> str:
     degrees = round(math.degrees(azimuth), 2) % 360.0
     return "" if degrees == math.degrees(PLAIN_LIGHTING.sun_azimuth) else f"az{degrees:06.2f}deg"
+
+
+def _rotation(angle: float) -> str:
+    degrees = round(math.degrees(angle), 2) % 360.0
+    return f"rot{degrees:g}deg" if degrees else ""
 
 
 def _scale(encoding: Encoding) -> str:

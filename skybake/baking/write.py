@@ -175,7 +175,7 @@ def bake_scene(
     rasters = {path: Raster(scene, one) for path, one in zip(paths, canvases, strict=True)}
     peak = max(raster.peak for raster in rasters.values())
     largest, smallest = value_range(scene, peak)
-    warnings = scene_warnings(scene, paths[0], largest, peak)
+    warnings = scene_warnings(scene, peak)
     stored = fitting_pixel(encoding.pixel, largest, smallest) if pixel is None else pixel
     specs = {
         path: MapSpec(
@@ -186,6 +186,7 @@ def bake_scene(
             pixel=stored,
             compression=encoding.compression,
             envmap=raster.canvas.envmap,
+            states_exposure=not encoding.omit_exposure,
             attributes=attributes,
         )
         for path, raster in rasters.items()
@@ -205,7 +206,8 @@ def bake_scene(
             )
             draw = partial(show_scene, scene, show, preview_ev)
         writers = stack.enter_context(open_maps(specs, files))
-        loss = HalfLoss() if encoding.pixel == "half" and stored == "half" else None
+        is_radiance = paths[0].suffix.lower() == ".hdr"
+        loss = HalfLoss() if is_radiance or encoding.pixel == stored == "half" else None
         _write(rasters, writers, scene.workers, progress, loss)
         if loss is not None:
             lost = loss.warning(paths[0])

@@ -12,6 +12,7 @@ from skybake.colour.space import find_colour_space, luminance_weights, rgb_from_
 from skybake.errors import UnsolvableError
 from skybake.image.settings import MapSettings
 from skybake.image.stages import Stages
+from skybake.image.sun_size import drawn_radius
 from skybake.jit.arguments import flatten
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.medium import Array
@@ -20,6 +21,7 @@ from skybake.preset import Planet
 from skybake.projection.cells import Cells
 from skybake.projection.equirect import column_bearings, row_zeniths
 from skybake.sky.disc import Disc
+from skybake.sky.drawn_disc import DrawnDisc
 from skybake.sky.pixels import allocate_pixels, fill_directions
 from skybake.sky.sky import WAVELENGTHS, Sky
 from skybake.sky.spectral_table import radiance_at_nodes
@@ -104,11 +106,28 @@ class Scene:
             workers=workers,
         )
         self.sun_zenith = math.pi / 2.0 - settings.lighting.sun_elevation
+        # Of maps that are not rotated, the compass bearing.
+        self.sun_bearing = settings.lighting.sun_azimuth - settings.view.rotation
 
     @cached_property
     def sun(self) -> Disc:
-        """The sun's disc."""
-        return Disc(self.sky.skylight, self.sky.source)
+        """The sun's disc, as it is drawn.
+
+        Raises
+        ------
+        InputError
+            If it is to be soft and no such disc fits half floats.
+        """
+        lighting = self.settings.lighting
+        source = self.sky.source
+        if lighting.sun_size is None and not lighting.sun_soft:
+            return Disc(self.sky.skylight, source)
+        flux = lighting.sun_strength * float(self.rgb_weights.sum(axis=0).max())
+        # Before the atmosphere is solved for, which takes long.
+        radius = drawn_radius(lighting, source.angular_radius, flux)
+        return DrawnDisc(
+            self.sky.skylight, source, angular_radius=radius, is_soft=lighting.sun_soft
+        )
 
     @cached_property
     def xyz_weights(self) -> Array:
@@ -210,15 +229,18 @@ class Scene:
         for first in range(0, len(flux), CELLS_AT_ONCE):
             part = slice(first, first + CELLS_AT_ONCE)
             light = self.sun.radiance_per_irradiance(
-                cells.zenith[part], cells.distance[part], cells.azimuth[part]
+                cells.zenith[part],
+                cells.distance[part],
+                cells.azimuth[part] + self.settings.view.rotation,
             )
             flux[part] = (light @ self.rgb_weights) * cells.solid_angle[part, None]
-        return flux
+        return self.settings.lighting.sun_strength * flux
 
     def sun_xyz(self) -> tuple[Array, Array]:
         """XYZ by the sun's disc, on a plane that faces it and on the horizontal. [lx]"""
         normal, horizontal = self.sun.irradiance_per_irradiance()
-        return normal @ self.xyz_weights, horizontal @ self.xyz_weights
+        weights = self.settings.lighting.sun_strength * self.xyz_weights
+        return normal @ weights, horizontal @ weights
 
     def sun_illuminance(self) -> tuple[float, float]:
         """Illuminance by the sun's disc, facing it and on the horizontal. [lx]"""

@@ -81,14 +81,14 @@ class Part:
         The pixels.
     row, column : int
         Of its first pixel in the picture.
-    flip : {None, "rows", "columns"}
+    flip : {None, "rows", "columns", "both"}
         Whether it is upside down, or mirrored left to right.
     """
 
     chart: Chart
     row: int = 0
     column: int = 0
-    flip: Literal["rows", "columns"] | None = None
+    flip: Literal["rows", "columns", "both"] | None = None
 
 
 @dataclass(frozen=True)

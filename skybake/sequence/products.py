@@ -14,8 +14,9 @@ from typing import Any
 from skybake.constants import ASTRONOMICAL_UNIT
 from skybake.errors import OutputError
 from skybake.formats.targets import check_target
+from skybake.image.settings import Lighting
 from skybake.optics.spectrum import star_at
-from skybake.preset import Star
+from skybake.preset import Planet
 from skybake.sequence.animation import STILL_WIDTH, check_animation, write_animation
 from skybake.sequence.frame import FrameOutcome
 from skybake.sequence.frames import FramePattern
@@ -148,7 +149,7 @@ def _header(products: Products) -> SequenceHeader:
         projection=settings.view.projection.name,
         colorspace=settings.encoding.colorspace,
         sun_disc=settings.lighting.sun_disc,
-        sun_angular_diameter_deg=_diameter(star_at(planet.star, settings.lighting.sun_distance)),
+        sun_angular_diameter_deg=_diameter(planet, settings.lighting),
         recipe={"map": _common(maps), "preset": _common(worlds), "command": list(products.command)},
         fps=products.fps,
     )
@@ -170,7 +171,8 @@ def _common(recipes: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 
 def _record(plan: Plan, frame: Frame, outcome: FrameOutcome, folder: Path) -> FrameRecord:
     settings, light = frame.settings, outcome.light
-    star = star_at(plan.planet(frame).star, settings.lighting.sun_distance)
+    planet = plan.planet(frame)
+    star = star_at(planet.star, settings.lighting.sun_distance)
     time = frame.attributes.get("skybake:time")
     return FrameRecord(
         frame=frame.number,
@@ -182,7 +184,7 @@ def _record(plan: Plan, frame: Frame, outcome: FrameOutcome, folder: Path) -> Fr
         sun_direction=light.sun_direction,
         sun_colour=light.sun_colour,
         sun_distance_au=star.distance / ASTRONOMICAL_UNIT,
-        sun_angular_diameter_deg=_diameter(star),
+        sun_angular_diameter_deg=_diameter(planet, settings.lighting),
         sun_illuminance_lux=light.direct_normal_illuminance,
         direct_illuminance_lux=light.direct_illuminance,
         sky_illuminance_lux=light.sky_illuminance,
@@ -194,9 +196,10 @@ def _record(plan: Plan, frame: Frame, outcome: FrameOutcome, folder: Path) -> Fr
     )
 
 
-def _diameter(star: Star) -> float:
-    """Of the disc. [deg]"""
-    return math.degrees(2.0 * star.angular_radius)
+def _diameter(planet: Planet, lighting: Lighting) -> float:
+    """Of the disc as it is drawn. [deg]"""
+    star = star_at(planet.star, lighting.sun_distance)
+    return math.degrees(lighting.sun_size or 2.0 * star.angular_radius)
 
 
 def _seen_from(folder: Path, path: Path) -> str:

@@ -19,7 +19,11 @@ SETTINGS = {
     "colorspace": "acescg",
     "units": "nits",
     "ev": 12.0,
+    "rotation": 30.0 * DEGREE,
     "sun_disc": "exclude",
+    "sun_size": 2.0 * DEGREE,
+    "sun_soft": True,
+    "sun_strength": 0.5,
     "clamp_negative": True,
     "method": "hillaire",
     "sun_distance": 0.98,
@@ -60,6 +64,10 @@ def test_what_changes_the_light_shows_in_the_name():
     assert name(method="march", colorspace="xyz", units="nits", clamp_negative=True) == (
         "mars_sun30.00deg_march_xyz_nits_clamped_equirect.exr"
     )
+    assert name(rotation=-DEGREE, sun_size=2.0 * DEGREE, sun_soft=True, sun_strength=0.5) == (
+        "mars_sun30.00deg_rot359deg_size2deg_soft_strength0.5_equirect.exr"
+    )
+    assert name(rows="poles") == "mars_sun30.00deg_equirect_poles.exr"
     assert name(projection="cubemap", layout="cross") == ("mars_sun30.00deg_cubemap_cross.exr")
 
 
@@ -71,6 +79,8 @@ def test_what_changes_the_light_shows_in_the_name():
         {"compression": "dwaa:45"},
         {"sun_azimuth": -math.pi},
         {"ev": 15.0},
+        {"omit_exposure": True},
+        {"rotation": 2.0 * math.pi},
     ],
 )
 def test_what_does_not_change_the_light_does_not_show(settings):
@@ -91,7 +101,7 @@ def test_no_two_variants_share_a_name():
 def test_names_are_short_and_fit_for_any_file_system(changes):
     longest = name(changes, **SETTINGS)
     assert re.fullmatch(r"[A-Za-z0-9_.=-]+", longest)
-    assert len(longest) < 160
+    assert len(longest) < 200
 
 
 def test_long_changes_are_six_digits_which_stay_the_same():

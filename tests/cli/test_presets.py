@@ -7,6 +7,7 @@ from pathlib import Path
 import OpenImageIO
 import pytest
 
+from skybake.formats.reader import read_attributes
 from skybake.preset import load_preset, preset_names
 from tests.cli.runs import SMALL, invoke, listing, run
 from tests.cli.test_faults import check_fault
@@ -284,8 +285,7 @@ def test_what_was_set_stands_in_the_file(tmp_path):
     changes = ("--visibility", "20km", "--ozone", "250")
     target = tmp_path / "a.exr"
     assert invoke("render", *SMALL, "--method", "hillaire", *changes, "-o", target).exit_code == 0
-    spec = OpenImageIO.ImageInput.open(str(target)).spec()
-    recipe = json.loads(spec.getattribute("skybake:recipe"))["preset"]
+    recipe = json.loads(read_attributes(target)["skybake:recipe"])["preset"]
     assert recipe["set"]["constituents.ozone.column_du"] == 250.0
     depth = recipe["set"]["constituents.aerosol.optical_depth"]
     assert recipe["constituents"]["aerosol"]["optical_depth"] == depth

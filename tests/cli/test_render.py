@@ -103,6 +103,7 @@ FACES = ["px", "nx", "py", "ny", "pz", "nz"]
         (("-o", "{face}.hdr"), [f"{face}.hdr" for face in FACES], (16, 16)),
         (("-o", "a.exr", "--cube-layout", "cross"), ["a.exr"], (64, 48)),
         (("-o", "a.hdr", "--cube-layout", "cross"), ["a.hdr"], (64, 48)),
+        (("-o", "a.exr", "--cube-layout", "vertical-cross"), ["a.exr"], (48, 64)),
         (("-o", "a.exr", "--cube-layout", "exr"), ["a.exr"], (16, 96)),
     ],
 )
@@ -160,7 +161,9 @@ def test_a_map_is_shown_later_as_it_would_have_been_at_once():
 def test_options_reach_the_map():
     told = render(
         *("--size", "64x32", "--colorspace", "xyz", "--ev", "3", "--pixel", "float"),
-        *("--compression", "zip:9", "--sun-disc", "exclude", "--clamp-negative"),
+        *("--compression", "zip:9", "--sun-disc", "only", "--clamp-negative"),
+        *("--equirect-rows", "poles", "--rotate", "20deg", "--sun-size", "1.5deg"),
+        *("--sun-soft", "--sun-strength", "0.5"),
         *("--method", "march", "--altitude", "1km", "-o", "a.exr"),
     )
     recipe = json.loads(read_image(Path("a.exr"))[1]["skybake:recipe"])["map"]
@@ -172,14 +175,35 @@ def test_options_reach_the_map():
         "projection": "equirect",
         "width": 64,
         "cube_layout": None,
+        "equirect_rows": "poles",
+        "rotate_deg": pytest.approx(20.0),
         "colorspace": "xyz",
         "white_luminance_cd_m2": pytest.approx(9.6),
         "pixel": "float",
         "compression": "zip:9",
-        "sun_disc": "exclude",
+        "sun_disc": "only",
+        "sun_size_deg": pytest.approx(1.5),
+        "sun_soft": True,
+        "sun_strength": 0.5,
         "clamp_negative": True,
+        "omit_exposure": False,
         "method": "march",
     }
+
+
+@pytest.mark.parametrize("projection", ["angular", "octahedral"])
+def test_a_square_map_is_baked_shown_and_part_of_a_sequence(folder, projection):
+    options = ("--projection", projection, "--size", 32, "--method", "hillaire")
+    told = render(*options, "-o", "a.hdr", "--omit-exposure", "--preview")
+    assert (told["projection"], told["preview"]) == (projection, "a.png")
+    attributes = read_image(Path("a.hdr"))[1]
+    assert attributes["whiteLuminance"] == pytest.approx(39321.6)
+    assert "EXPOSURE" not in attributes
+    assert invoke("preview", "a.hdr", "-o", "b.png").exit_code == 0
+    made = ("sequence", *options, "--frames", "1-2", "--rotate", "90deg", "-o", "s.#.exr")
+    assert invoke(*made, "--contact-sheet", "s.png").exit_code == 0
+    assert "0 frames baked, 2 skipped" in invoke(*made, "--skip-existing").stdout
+    assert "2 frames baked" in invoke(*made, "--sun-soft", "--skip-existing").stdout
 
 
 def test_people_are_told_files_and_light_with_units():

@@ -21,13 +21,15 @@ from skybake.sequence.frames import parse_frames
 from skybake.sequence.ramp import Ramp
 from skybake.units import parse_angle, parse_duration, parse_length
 
-PROJECTIONS = ("equirect", "cubemap", "fisheye", "perspective")
+PROJECTIONS = ("equirect", "cubemap", "fisheye", "perspective", "angular", "octahedral")
 PROJECTIONS_WITH = {
+    "equirect_rows": ("equirect",),
     "cube_layout": ("cubemap",),
     "fov": ("fisheye", "perspective"),
     "look": ("fisheye", "perspective"),
 }
-CUBE_LAYOUTS = ("faces", "cross", "exr")
+EQUIRECT_ROWS = ("centres", "poles")
+CUBE_LAYOUTS = ("faces", "cross", "vertical-cross", "exr")
 COLOUR_SPACES = ("lin_rec709", "acescg", "lin_rec2020", "lin_p3d65", "aces2065-1", "xyz")
 UNITS = ("ev15", "nits")
 PIXELS = ("auto", "half", "float")
@@ -42,6 +44,8 @@ Paths = TypeVar("Paths", Path | None, tuple[Path, ...])
 _RIGHT_ANGLE = math.pi / 2 + 1e-9
 
 _MOST_TURNS = 1000
+_LARGEST_DISC = math.radians(20.0) + 1e-9
+_STRONGEST = 1e6
 _FASTEST = 1000.0
 
 _PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".gif", ".tif", ".tiff")
@@ -145,6 +149,27 @@ def field_of_view(text: str) -> float:
     if not angle > 0.0:
         raise click.BadParameter(f"must be greater than 0deg, got {text}")
     return angle
+
+
+def disc_diameter(text: str) -> float:
+    """Read an angle greater than 0deg, at most 20deg. [rad]"""
+    angle = _parse(text, parse_angle)
+    if not 0.0 < angle <= _LARGEST_DISC:
+        raise click.BadParameter(f"must be greater than 0deg and at most 20deg, got {text}")
+    return angle
+
+
+def strength(text: str) -> float:
+    """Read a factor greater than 0, at most a million."""
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not 0.0 < number <= _STRONGEST:
+        raise click.BadParameter(
+            f"must be a number greater than 0 and at most {_STRONGEST:g}, got {text!r}"
+        )
+    return number
 
 
 def look(text: str) -> tuple[float, float]:

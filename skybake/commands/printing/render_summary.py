@@ -45,14 +45,15 @@ def result(
     """Return what ``--json`` prints, see docs/cli.md."""
     from skybake.optics.spectrum import star_at
 
-    star = star_at(planet.star, settings.lighting.sun_distance)
+    lighting = settings.lighting
+    star = star_at(planet.star, lighting.sun_distance)
     return {
         "files": [str(path) for path in baked.files],
         "preset": planet.name,
         "time": None if when is None else when.attributes.get("skybake:time"),
         "sun_direction": list(baked.sun_direction),
         "sun_distance_au": star.distance / ASTRONOMICAL_UNIT,
-        "sun_angular_diameter_deg": math.degrees(2.0 * star.angular_radius),
+        "sun_angular_diameter_deg": math.degrees(lighting.sun_size or 2.0 * star.angular_radius),
         "direct_illuminance_lux": baked.direct_illuminance,
         "direct_normal_illuminance_lux": baked.direct_normal_illuminance,
         "sky_illuminance_lux": baked.sky_illuminance,
