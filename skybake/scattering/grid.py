@@ -29,8 +29,9 @@ LAST_JUDGED_THICK = math.radians(97.0)
 """Solar zenith angles beyond which it is night, and, if the atmosphere is thick, beyond which
 light settles very slowly. [rad]"""
 
-UPWARD = 12
-DOWNWARD = 6
+UPWARD = 18
+DOWNWARD = 8
+"""Directions above and below the horizon; in deep twilight all light comes from a low arch."""
 
 # Spacing of the sun's zenith angles: fine where the planet's shadow passes through
 # the atmosphere, and not too wide at the zenith, near which moments vary as sin(angle)**m.
