@@ -5,8 +5,8 @@ import math
 import numpy as np
 
 from skybake.angles import cosine_between
-from skybake.scattering.aureole import no_aureole
 from skybake.scattering.atmosphere import load_atmosphere
+from skybake.scattering.aureole import no_aureole
 from skybake.sky.observer import Observer
 from skybake.sky.single import SingleSkylight
 from skybake.sky.skylight import Skylight

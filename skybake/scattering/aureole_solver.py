@@ -37,17 +37,17 @@ from skybake.transport.trace import trace
 LEAST_PEAK = 0.02
 """Share of the scattered light in a peak from which its paths matter."""
 
-RINGS = 14
+RINGS = 12
 """Angles from the sun at which light is traced."""
 
-SIDES = 3
+SIDES = 2
 """Position angles on either side of the horizon at which it is."""
 
 SERIES = 48
 """Highest Legendre order of what a peak scatters of the difference, which is smooth."""
 
-SHELLS = 30
-ARC = math.radians(1.0)
+SHELLS = 20
+ARC = math.radians(1.5)
 
 
 class Directions(NamedTuple):
@@ -265,9 +265,7 @@ def _transport(
     return out
 
 
-def _project(
-    grid: Grid, around: Directions, radiance: Array, field: DiffuseField
-) -> DiffuseField:
+def _project(grid: Grid, around: Directions, radiance: Array, field: DiffuseField) -> DiffuseField:
     """Moments about the zenith of light around the sun."""
     solid_angle = 2.0 * around.weight[:, None] * around.position_weight
     mu_s, sine_s = np.cos(grid.sun_angle), np.sin(grid.sun_angle)

@@ -21,8 +21,8 @@ from skybake.scattering.field import DiffuseField, lower_order, raise_order, sum
 from skybake.scattering.grid import (
     ORDER,
     Grid,
-    azimuths,
     build_grid,
+    coarsen_grid,
     empty_field,
     no_field,
     project,
@@ -100,9 +100,8 @@ def solve_light(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> Atmosphe
     check_medium(scaled)
     grid = build_grid(scaled)
     dark = empty_field(scaled, grid.altitude, grid.sun_angle, ORDER)
-    coarse_grid = grid._replace(azimuth=azimuths(COARSE_ORDER))
-    traced = _trace_grid(scaled, grid)
-    coarse_rays, rays = _fan_out(scaled, coarse_grid, traced), _fan_out(scaled, grid, traced)
+    coarse_grid = coarsen_grid(grid, scaled.medium.r_bottom, COARSE_ORDER)
+    coarse_rays, rays = _trace_grid(scaled, coarse_grid), _trace_grid(scaled, grid)
     first = _first_order(atmosphere, grid, workers)
     if has_aureole(atmosphere):
         aureole, bent = solve_aureole(atmosphere, grid, dark, workers)
@@ -238,13 +237,6 @@ def _trace_grid(scaled: ScaledMedium, grid: Grid) -> list[Batch]:
             batches.append(Batch(node, flatten(fans), begin, stop, flatten(samples)))
             begin = stop
     return batches
-
-
-def _fan_out(scaled: ScaledMedium, grid: Grid, traced: list[Batch]) -> list[Batch]:
-    """Give traced directions the suns and azimuths of a grid."""
-    nodes = range(grid.altitude.size)
-    fans = [flatten(group_rays(_rays_at(scaled, grid, node))) for node in nodes]
-    return [batch._replace(fans=fans[batch.node]) for batch in traced]
 
 
 def _scatter(
