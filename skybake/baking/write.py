@@ -6,11 +6,10 @@ from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
 
-import numpy as np
-
+from skybake.baking.losses import HalfLoss, scene_warnings
 from skybake.baking.paths import default_path, map_paths
+from skybake.baking.pixel_type import PixelType, fitting_pixel, value_range
 from skybake.formats.preview import check_preview
 from skybake.formats.scanlines import Rows
 from skybake.formats.spec import Attribute, MapSpec
@@ -26,8 +25,6 @@ from skybake.jit.workers import Workers
 from skybake.preset import Planet, load_preset
 
 BAND_ROWS = 128
-HALF_LARGEST = 60000.0
-HALF_SMALLEST = 2.0**-14
 
 Progress = Callable[[float], None]
 
@@ -52,6 +49,8 @@ class Baked(Light):
         CIE xy of the light that is white in it; None for D65.
     clamped : int
         Negative values that became 0 in a format without a sign.
+    warnings : tuple of str
+        What the files lose of the light, or why it may not be what was meant, a line each.
     """
 
     files: tuple[Path, ...]
@@ -61,6 +60,7 @@ class Baked(Light):
     preview_ev: float | None
     preview_white: tuple[float, float] | None
     clamped: int
+    warnings: tuple[str, ...] = ()
 
 
 def bake(
@@ -150,10 +150,12 @@ def bake_scene(
     attributes: Mapping[str, Attribute] | None = None,
     progress: Progress | None = None,
     files: WholeFiles | None = None,
+    pixel: PixelType | None = None,
 ) -> Baked:
     """Bake the map of a scene.
 
-    Parameters and errors are those of `bake`, besides other files of the same set.
+    Parameters and errors are those of `bake`, besides other files of the same set, and what
+    `auto` shall stand for, see `pixel_type`.
     """
     planet, settings = scene.planet, scene.settings
     paths = map_paths(output, settings)
@@ -166,14 +168,17 @@ def bake_scene(
     encoding = settings.encoding
     canvases = settings.view.projection.canvases()
     rasters = {path: Raster(scene, one) for path, one in zip(paths, canvases, strict=True)}
-    pixel = _pixel(scene, max(raster.peak for raster in rasters.values()))
+    peak = max(raster.peak for raster in rasters.values())
+    largest, smallest = value_range(scene, peak)
+    warnings = scene_warnings(scene, peak)
+    stored = fitting_pixel(encoding.pixel, largest, smallest) if pixel is None else pixel
     specs = {
         path: MapSpec(
             raster.canvas.width,
             raster.canvas.height,
             encoding.space,
             encoding.white_luminance,
-            pixel=pixel,
+            pixel=stored,
             compression=encoding.compression,
             envmap=raster.canvas.envmap,
             states_exposure=not encoding.omit_exposure,
@@ -191,35 +196,25 @@ def bake_scene(
             look = picture or PictureSettings()
             shown = open_picture(scene, preview, look, files, stack)
         writers = stack.enter_context(open_maps(specs, files))
-        _write(rasters, writers, scene.workers, progress)
+        is_radiance = paths[0].suffix.lower() == ".hdr"
+        loss = HalfLoss() if is_radiance or encoding.pixel == stored == "half" else None
+        _write(rasters, writers, scene.workers, progress, loss)
+        if loss is not None:
+            lost = loss.warning(paths[0])
+            warnings += [] if lost is None else [lost]
         if shown is not None:
             shown.draw()
     return Baked(
         **vars(light),
         files=paths,
         white_luminance=encoding.white_luminance,
-        pixel=pixel if paths[0].suffix.lower() == ".exr" else "rgbe",
+        pixel=stored if paths[0].suffix.lower() == ".exr" else "rgbe",
         preview=preview,
         preview_ev=None if shown is None else shown.ev,
         preview_white=None if shown is None else shown.white,
         clamped=sum(writer.clamped for writer in writers.values()),
+        warnings=tuple(warnings),
     )
-
-
-def _pixel(scene: Scene, peak: float) -> Literal["half", "float"]:
-    """Type in which no value overflows and no sky value loses bits."""
-    encoding = scene.settings.encoding
-    if encoding.pixel != "auto":
-        return "half" if encoding.pixel == "half" else "float"
-    if "sky" not in scene.layer_names:
-        return "half" if peak < HALF_LARGEST else "float"
-    toward_sun = scene.evaluate(np.array([[scene.sun_zenith]]), np.zeros((1, 1)), 1e-9)
-    luminance = scene.survey @ (scene.luminance / encoding.white_luminance)
-    lit = luminance[luminance > 0.0]
-    largest = 1.1 * max(np.abs(scene.survey).max(), np.abs(toward_sun).max()) + peak
-    # The survey's texels are coarser than the map's, so the bounds keep a margin.
-    smallest = 0.5 * float(lit.min()) if lit.size else 1.0
-    return "half" if largest < HALF_LARGEST and smallest >= HALF_SMALLEST else "float"
 
 
 def _write(
@@ -227,6 +222,7 @@ def _write(
     writers: dict[Path, MapWriter],
     workers: Workers,
     progress: Progress | None,
+    loss: HalfLoss | None,
 ) -> None:
     bands = [
         (path, first, min(first + BAND_ROWS, raster.canvas.height))
@@ -236,7 +232,10 @@ def _write(
 
     def compute(band: tuple[Path, int, int]) -> Rows:
         path, first, last = band
-        return writers[path].ready(rasters[path].rows(first, last), workers)
+        rows = rasters[path].rows(first, last)
+        if loss is not None:
+            loss.add(rows)
+        return writers[path].ready(rows, workers)
 
     computed = workers.ahead(compute, bands)
     for i, ((path, first, last), rows) in enumerate(zip(bands, computed, strict=True)):

@@ -53,7 +53,7 @@ _LAYERS = {"include": ("sky", "sun"), "exclude": ("sky",), "only": ("sun",)}
 
 def luminous_weights(sky: Sky) -> Array:
     """Weights from radiance per unit irradiance [sr⁻¹] to XYZ [cd m⁻²], (wavelength, 3)."""
-    star = star_spectrum(sky.planet.star)
+    star = star_spectrum(sky.star)
     if sky.planet.rendering == "spectral":
         return xyz_weights(sky.wavelengths, *star)
     # Three wavelengths stand for R, G and B, and the sun for white of its illuminance.
@@ -107,6 +107,7 @@ class Scene:
             settings.lighting.sun_elevation,
             settings.view.altitude,
             sun_azimuth=settings.lighting.sun_azimuth,
+            sun_distance=settings.lighting.sun_distance,
             method=settings.lighting.method,
             workers=workers,
         )

@@ -12,6 +12,7 @@ from skybake.errors import InputError
 from skybake.formats.compression import parse_compression
 from skybake.projection import Equirect, Projection, find_projection
 from skybake.sky.sky import METHODS
+from skybake.units import degrees, metres
 
 SUN_DISCS = ("include", "exclude", "only")
 LARGEST_SUN = math.radians(20.0)
@@ -55,6 +56,8 @@ class Lighting:
         Geometric elevation of the sun's centre at the observer. [rad]
     sun_azimuth : float
         Compass bearing of the sun: 0 = north, clockwise. [rad]
+    sun_distance : float or None
+        Of the sun; None leaves it where the preset has it. [au]
     sun_disc : {"include", "exclude", "only"}
         Whether the map holds the sun's disc, or nothing else.
     sun_size : float or None
@@ -70,6 +73,7 @@ class Lighting:
 
     sun_elevation: float = math.radians(30.0)
     sun_azimuth: float = math.pi
+    sun_distance: float | None = None
     sun_disc: str = "include"
     sun_size: float | None = None
     sun_soft: bool = False
@@ -162,17 +166,18 @@ class MapSettings:
         """All that decides the pixels, in human-readable units, fit for JSON."""
         lighting, encoding = self.lighting, self.encoding
         return {
-            "sun_elevation_deg": math.degrees(lighting.sun_elevation),
-            "sun_azimuth_deg": math.degrees(lighting.sun_azimuth),
-            "altitude_m": self.view.altitude * 1e3,
+            "sun_elevation_deg": degrees(lighting.sun_elevation),
+            "sun_azimuth_deg": degrees(lighting.sun_azimuth),
+            **({} if lighting.sun_distance is None else {"sun_distance_au": lighting.sun_distance}),
+            "altitude_m": metres(self.view.altitude),
             **self.view.projection.recipe(),
-            "rotate_deg": math.degrees(self.view.rotation),
+            "rotate_deg": degrees(self.view.rotation),
             "colorspace": encoding.colorspace,
             "white_luminance_cd_m2": encoding.white_luminance,
             "pixel": encoding.pixel,
             "compression": encoding.compression,
             "sun_disc": lighting.sun_disc,
-            "sun_size_deg": None if lighting.sun_size is None else math.degrees(lighting.sun_size),
+            "sun_size_deg": None if lighting.sun_size is None else degrees(lighting.sun_size),
             "sun_soft": lighting.sun_soft,
             "sun_strength": lighting.sun_strength,
             "clamp_negative": encoding.clamp_negative,

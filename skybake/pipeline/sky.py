@@ -50,6 +50,7 @@ class Sky(sky.Sky):
             width,
             sun_elevation=self.sun_elevation,
             sun_azimuth=self.sun_azimuth,
+            sun_distance=self.sun_distance,
             method=self.method,
             altitude=self.altitude,
             **values,

@@ -31,6 +31,7 @@ from skybake.projection.frame import (
     look_label,
     zenith_extent,
 )
+from skybake.units import degrees
 
 WIDEST = math.radians(270.0)
 
@@ -207,9 +208,9 @@ class Fisheye(Projection):
         return {
             "projection": self.name,
             "width": self.edge,
-            "fov_deg": math.degrees(self.fov),
-            "look_azimuth_deg": math.degrees(self.azimuth),
-            "look_elevation_deg": math.degrees(self.elevation),
+            "fov_deg": degrees(self.fov),
+            "look_azimuth_deg": degrees(self.azimuth),
+            "look_elevation_deg": degrees(self.elevation),
         }
 
     def smaller(self, width: int) -> Projection:

@@ -12,6 +12,7 @@ from skybake.projection.cells import Array
 from skybake.projection.chart import Canvas, Projection, check_edge, size_text, whole
 from skybake.projection.frame import check_look, look_frame, look_label
 from skybake.projection.gnomonic import GnomonicChart
+from skybake.units import degrees
 
 WIDEST = math.radians(170.0)
 LARGEST_PREVIEW = 1920
@@ -76,9 +77,9 @@ class Perspective(Projection):
             "projection": self.name,
             "width": self.width,
             "height": self.height,
-            "fov_deg": math.degrees(self.fov),
-            "look_azimuth_deg": math.degrees(self.azimuth),
-            "look_elevation_deg": math.degrees(self.elevation),
+            "fov_deg": degrees(self.fov),
+            "look_azimuth_deg": degrees(self.azimuth),
+            "look_elevation_deg": degrees(self.elevation),
         }
 
     def smaller(self, width: int) -> Projection:

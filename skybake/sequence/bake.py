@@ -9,6 +9,7 @@ from dataclasses import replace
 from skybake.image.picture_settings import PictureSettings
 from skybake.sequence.dask import dask_pool
 from skybake.sequence.frame import PreviewSettings
+from skybake.sequence.pixel import common_pixel
 from skybake.sequence.plan import Plan
 from skybake.sequence.pool import Run, local_pool
 from skybake.sequence.products import Products
@@ -142,7 +143,7 @@ def frame_pool(
 def _preview_settings(
     plan: Plan, products: Products | None, picture: PictureSettings
 ) -> PreviewSettings:
-    """How frames are shown; of a part of a sequence as all of it would be."""
+    """How frames are stored and shown; of a part of a sequence as all of it would be."""
     widths = () if products is None else products.thumbnail_widths
     is_common = picture.ev in {None, "auto"}
     follows_map = is_common and plan.exposure_curve is not None
@@ -152,4 +153,4 @@ def _preview_settings(
     has_pictures = bool(shared) or any(frame.preview is not None for frame in plan.frames)
     if is_common and has_pictures and not follows_map:
         picture = replace(picture, ev=common_ev(plan, picture))
-    return PreviewSettings(picture, adapts_tiles, follows_map, widths)
+    return PreviewSettings(picture, adapts_tiles, follows_map, widths, common_pixel(plan))

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.baking.paths import map_paths
+from skybake.baking.pixel_type import PixelType
 from skybake.baking.write import bake_scene
 from skybake.colour.exposure import ev_from_luminance
 from skybake.errors import InputError
@@ -44,12 +45,15 @@ class PreviewSettings:
         Show maps as their own exposure has them, in place of that exposure.
     thumbnail_widths : tuple of int
         Of the thumbnails of each frame. [pixel]
+    pixel : {"half", "float"} or None
+        What the maps' pixel type auto stands for; None decides it by each frame.
     """
 
     picture: PictureSettings = field(default_factory=PictureSettings)
     adapts_tiles: bool = False
     follows_map: bool = False
     thumbnail_widths: tuple[int, ...] = ()
+    pixel: PixelType | None = None
 
 
 @dataclass(frozen=True)
@@ -74,6 +78,8 @@ class FrameOutcome:
         The same of its tile on a contact sheet.
     thumbnails : mapping of int to ndarray of uint8
         Code values of sRGB, shape (row, width, 3), by their widths.
+    warnings : tuple of str
+        As of `skybake.baking.Baked`; none of a frame that was found.
     """
 
     number: int
@@ -84,6 +90,7 @@ class FrameOutcome:
     ev: float | None
     tile_ev: float | None
     thumbnails: Mapping[int, npt.NDArray[np.uint8]]
+    warnings: tuple[str, ...] = ()
 
 
 def finish_frame(
@@ -119,6 +126,7 @@ def finish_frame(
     is_new = found is None
     pipeline.workers.check()
     files = map_paths(frame.output, frame.settings)
+    warnings: tuple[str, ...] = ()
     if found is None:
         with WholeFiles() as whole:
             baked = bake_scene(
@@ -128,9 +136,11 @@ def finish_frame(
                 picture=None if frame.preview is None else work.picture,
                 attributes=frame.attributes,
                 files=whole,
+                pixel=work.pixel,
             )
             digests = {path: file_sha256(whole.written(path)) for path in frame.files()}
             write_digests(whole, frame.output, work.claim, digests)
+        warnings = baked.warnings
         # As read from its files if they are found later.
         light = light_from_attributes(attributes_from_light(baked))
     else:
@@ -146,6 +156,7 @@ def finish_frame(
         ev=work.ev if frame.preview is not None else None,
         tile_ev=work.tile_ev if TILE_WIDTH in previews.thumbnail_widths else None,
         thumbnails={width: work.thumbnail(width) for width in previews.thumbnail_widths},
+        warnings=warnings,
     )
 
 
@@ -185,10 +196,18 @@ class _Work:
         """How the preview shows the map."""
         return replace(self._previews.picture, ev=self.ev)
 
+    @property
+    def pixel(self) -> PixelType | None:
+        """What the frame's pixel type auto stands for, if that is decided."""
+        return self._previews.pixel if self._frame.settings.encoding.pixel == "auto" else None
+
     @cached_property
     def claim(self) -> str:
         """What the maps are to hold, see `claim_of`."""
-        return claim_of(recipe_hash(self._planet, self._frame.settings), self._frame.attributes)
+        decided = {} if self.pixel is None else {"pixel": self.pixel}
+        return claim_of(
+            recipe_hash(self._planet, self._frame.settings), {**self._frame.attributes, **decided}
+        )
 
     def found(self) -> tuple[Light, dict[Path, str]] | None:
         """Return light and digests of the files if they are as this frame's were written."""

@@ -42,6 +42,10 @@ class FrameRecord:
     sun_colour : tuple of 3 float
         Of the sun's light at the observer, linear Rec. 709 of luminance 1; any if it
         gives none.
+    sun_distance_au : float
+        Of the sun. [au]
+    sun_angular_diameter_deg : float
+        Of its disc. [deg]
     sun_illuminance_lux, direct_illuminance_lux : float
         By the sun's disc, on a plane that faces it and on a horizontal one. [lx]
     sky_illuminance_lux : float
@@ -66,6 +70,8 @@ class FrameRecord:
     altitude_m: float
     sun_direction: tuple[float, float, float]
     sun_colour: tuple[float, float, float]
+    sun_distance_au: float
+    sun_angular_diameter_deg: float
     sun_illuminance_lux: float
     direct_illuminance_lux: float
     sky_illuminance_lux: float
@@ -91,7 +97,7 @@ class SequenceHeader:
     sun_disc : {"include", "exclude", "only"}
         Whether the maps hold the sun's disc, or nothing else.
     sun_angular_diameter_deg : float
-        Of the star's disc, or of the size that it is drawn in. [deg]
+        Of the star's disc in the first frame, or of the size that it is drawn in. [deg]
     recipe : mapping
         What the maps are baked from, fit for JSON.
     fps : float

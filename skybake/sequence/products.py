@@ -11,8 +11,12 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from skybake.constants import ASTRONOMICAL_UNIT
 from skybake.errors import OutputError
 from skybake.formats.targets import check_target
+from skybake.image.settings import Lighting
+from skybake.optics.spectrum import star_at
+from skybake.preset import Planet
 from skybake.sequence.animation import STILL_WIDTH, check_animation, write_animation
 from skybake.sequence.frame import FrameOutcome
 from skybake.sequence.frames import FramePattern
@@ -22,6 +26,7 @@ from skybake.sequence.run import SequenceResult
 from skybake.sequence.sheet import TILE_WIDTH, check_sheet, contact_sheet
 from skybake.sequence.thumbnails import Thumbnails
 from skybake.sequence.usd import check_usd, write_usd
+from skybake.units import degrees, metres
 
 
 @dataclass(frozen=True)
@@ -105,7 +110,8 @@ class Products:
         frames = {frame.number: frame for frame in self.plan.frames}
         for path in self.manifests:
             records = [
-                _record(frames[outcome.number], outcome, path.parent) for outcome in outcomes
+                _record(self.plan, frames[outcome.number], outcome, path.parent)
+                for outcome in outcomes
             ]
             suffix = path.suffix.lower()
             if suffix == ".csv":
@@ -143,9 +149,7 @@ def _header(products: Products) -> SequenceHeader:
         projection=settings.view.projection.name,
         colorspace=settings.encoding.colorspace,
         sun_disc=settings.lighting.sun_disc,
-        sun_angular_diameter_deg=math.degrees(
-            settings.lighting.sun_size or 2.0 * planet.star.angular_radius
-        ),
+        sun_angular_diameter_deg=_diameter(planet, settings.lighting),
         recipe={"map": _common(maps), "preset": _common(worlds), "command": list(products.command)},
         fps=products.fps,
     )
@@ -165,18 +169,22 @@ def _common(recipes: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     return common
 
 
-def _record(frame: Frame, outcome: FrameOutcome, folder: Path) -> FrameRecord:
+def _record(plan: Plan, frame: Frame, outcome: FrameOutcome, folder: Path) -> FrameRecord:
     settings, light = frame.settings, outcome.light
+    planet = plan.planet(frame)
+    star = star_at(planet.star, settings.lighting.sun_distance)
     time = frame.attributes.get("skybake:time")
     return FrameRecord(
         frame=frame.number,
         time=None if time is None else str(time),
         label=frame.label,
-        sun_elevation_deg=math.degrees(settings.lighting.sun_elevation),
-        sun_azimuth_deg=math.degrees(settings.lighting.sun_azimuth),
-        altitude_m=settings.view.altitude * 1e3,
+        sun_elevation_deg=degrees(settings.lighting.sun_elevation),
+        sun_azimuth_deg=degrees(settings.lighting.sun_azimuth),
+        altitude_m=metres(settings.view.altitude),
         sun_direction=light.sun_direction,
         sun_colour=light.sun_colour,
+        sun_distance_au=star.distance / ASTRONOMICAL_UNIT,
+        sun_angular_diameter_deg=_diameter(planet, settings.lighting),
         sun_illuminance_lux=light.direct_normal_illuminance,
         direct_illuminance_lux=light.direct_illuminance,
         sky_illuminance_lux=light.sky_illuminance,
@@ -186,6 +194,12 @@ def _record(frame: Frame, outcome: FrameOutcome, folder: Path) -> FrameRecord:
         sha256=outcome.sha256,
         preview=None if frame.preview is None else _seen_from(folder, frame.preview),
     )
+
+
+def _diameter(planet: Planet, lighting: Lighting) -> float:
+    """Of the disc as it is drawn. [deg]"""
+    star = star_at(planet.star, lighting.sun_distance)
+    return math.degrees(lighting.sun_size or 2.0 * star.angular_radius)
 
 
 def _seen_from(folder: Path, path: Path) -> str:

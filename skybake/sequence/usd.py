@@ -134,7 +134,7 @@ def _sun(header: SequenceHeader, rows: Sequence[FrameRecord]) -> Iterator[str]:
         yield f"        doc = {_quoted(_SUN_IS_IN_MAPS)}"
         yield "    )"
     yield "    {"
-    yield f"        float inputs:angle = {header.sun_angular_diameter_deg:.9g}"
+    yield from _angle(rows)
     yield "        color3f inputs:color ("
     yield '            colorSpace = "lin_rec709_scene"'
     yield "        )"
@@ -156,6 +156,17 @@ def _sun(header: SequenceHeader, rows: Sequence[FrameRecord]) -> Iterator[str]:
     )
     yield '        uniform token[] xformOpOrder = ["xformOp:rotateXYZ"]'
     yield "    }"
+
+
+def _angle(rows: Sequence[FrameRecord]) -> Iterator[str]:
+    """Size of the sun's disc, which changes where its distance follows the date."""
+    angles = [f"{row.sun_angular_diameter_deg:.9g}" for row in rows]
+    if len(set(angles)) == 1:
+        yield f"        float inputs:angle = {angles[0]}"
+    else:
+        yield from _samples(
+            "        float inputs:angle", rows, lambda row: f"{row.sun_angular_diameter_deg:.9g}"
+        )
 
 
 def _samples(

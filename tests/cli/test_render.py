@@ -43,7 +43,10 @@ def test_json_says_what_was_baked(folder):
     assert told["clamped"] == 0
     assert (told["preview"], told["preview_ev"], told["preview_white"]) == (None, None, None)
     assert 0.0 < told["seconds"] < 300.0
-    assert len(told) == 16
+    assert told["sun_distance_au"] == 1.0
+    assert told["sun_angular_diameter_deg"] == pytest.approx(0.5329, abs=1e-4)
+    assert told["warnings"] == []
+    assert len(told) == 19
 
 
 def test_the_file_carries_what_json_says():
@@ -66,15 +69,15 @@ def test_the_file_carries_what_json_says():
 @pytest.mark.parametrize(
     ("arguments", "name"),
     [
-        ((), "earth_sun+30.00deg_equirect.exr"),
+        ((), "earth_sun30.00deg_equirect.exr"),
         (("--sun", "-4deg"), "earth_sun-04.00deg_equirect.exr"),
         (("--sun=-4",), "earth_sun-04.00deg_equirect.exr"),
-        (("--sun", "5400arcmin"), "earth_sun+90.00deg_equirect.exr"),
-        (("--altitude", "30000ft"), "earth_sun+30.00deg_9144m_equirect.exr"),
-        (("--preset", "mars", "--altitude", "2km"), "mars_sun+30.00deg_2000m_equirect.exr"),
+        (("--sun", "5400arcmin"), "earth_sun90.00deg_equirect.exr"),
+        (("--altitude", "30000ft"), "earth_sun30.00deg_9144m_equirect.exr"),
+        (("--preset", "mars", "--altitude", "2km"), "mars_sun30.00deg_2000m_equirect.exr"),
         (
             ("--ground-albedo", "snow", "--sun-azimuth", "450", "--sun-disc", "exclude"),
-            "earth_ground.albedo=snow_sun+30.00deg_az090.00deg_nodisc_equirect.exr",
+            "earth_ground.albedo=snow_sun30.00deg_az090.00deg_nodisc_equirect.exr",
         ),
     ],
 )
@@ -87,7 +90,7 @@ def test_a_preset_of_ones_own_gives_its_name(folder):
     Path("dusty.toml").write_text(invoke("presets", "show", "mars").stdout, encoding="utf-8")
     told = render(*SMALL, "--preset", "dusty.toml", "--sun", "5")
     assert told["preset"] == "dusty"
-    assert listing(folder) == ["dusty.toml", "dusty_sun+05.00deg_equirect.exr"]
+    assert listing(folder) == ["dusty.toml", "dusty_sun05.00deg_equirect.exr"]
 
 
 FACES = ["px", "nx", "py", "ny", "pz", "nz"]

@@ -1,6 +1,10 @@
 """``skybake sequence``: what it is told, what it plans, and what it emits."""
 
+import json
+import math
+from datetime import datetime, timedelta
 from pathlib import Path
+from zoneinfo import ZoneInfo
 
 import pytest
 
@@ -319,3 +323,32 @@ def test_the_default_name_tells_what_was_set_of_the_world():
         result = invoke("sequence", "--preset", "mars", "--frames", "1-2", *changes, "--dry-run")
         assert result.exit_code == 0
         assert result.stdout.splitlines()[1].endswith(f"  {name}.0002.exr")
+
+
+def test_emitted_commands_name_the_date_that_today_is():
+    place = ("--lat", "48.8566", "--lon", "2.3522", "--tz", "Europe/Paris", "--date", "today")
+    span = ("--from", "sunset", "--to", "civil-dusk", "--frames", "1-2", "--no-refraction")
+    before = datetime.now(ZoneInfo("Europe/Paris")).date()
+    command = invoke("sequence", *place, *span, "--emit-commands").stdout
+    # Midnight may pass meanwhile.
+    assert any(f"--date={before + timedelta(days=days)}" in command for days in (0, 1))
+    assert "--no-refraction" in command.split()
+    assert "today" not in command
+
+
+def test_frames_of_a_year_have_the_suns_distance_in_plan_and_manifest():
+    times = ("--lat", "0", "--lon", "0", "--from", "2026-01-03T09:00Z", "--to", "2026-07-06T09:00Z")
+    small = ("--size", "64x32", "--method", "hillaire", "-q", "--frames", "1-2", "-o", "a.#.exr")
+    result = invoke("sequence", *times, *small, "--contact-sheet", "a.png", "--manifest", "a.json")
+    assert result.exit_code == 0, result.output
+    records = json.loads(Path("a.json").read_text("utf-8"))["records"]
+    for record, distance in zip(records, (0.98330, 1.01664), strict=True):
+        assert record["sun_distance_au"] == pytest.approx(distance, abs=2e-5)
+        diameter = math.degrees(2 * math.asin(695_700 / (distance * 149_597_870.7)))
+        assert record["sun_angular_diameter_deg"] == pytest.approx(diameter, rel=1e-4)
+    planned = json.loads(invoke("sequence", *times, *small, "--dry-run", "--json").stdout)
+    assert [frame["sun_distance_au"] for frame in planned["frames"]] == [
+        record["sun_distance_au"] for record in records
+    ]
+    mean = invoke("sequence", *times, *small, "--dry-run", "--json", "--sun-distance", "mean")
+    assert "sun_distance_au" not in json.loads(mean.stdout)["frames"][0]

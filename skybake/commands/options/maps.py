@@ -34,8 +34,8 @@ map_options = options_together(
         metavar="WxH|EDGE",
         type=values.size,
         show_default="2048x1024 for equirect, 1920x1080 for perspective, 1024 for others",
-        help="Width and height, 2:1 for an equirect map, or edge of a cubemap's face or of a "
-        "square map.",
+        help="Width and height, 2:1 for an equirect map, whose width is enough, or edge of a "
+        "cubemap's face or of a square map.",
     ),
     click.option(
         "--fov",

@@ -37,6 +37,7 @@ SUN_DISCS = ("include", "exclude", "only")
 METHODS = ("full", "hillaire", "march")
 VIEWS = ("aces1", "aces2")
 COLDEST, HOTTEST = 1000.0, 25_000.0
+DAYS_FROM_TODAY = {"yesterday": -1, "today": 0, "tomorrow": 1}
 
 Paths = TypeVar("Paths", Path | None, tuple[Path, ...])
 
@@ -48,6 +49,11 @@ _WIDEST = math.radians(170.0)
 _LARGEST_DISC = math.radians(20.0) + 1e-9
 _STRONGEST = 1e6
 _FASTEST = 1000.0
+
+_PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".gif", ".tif", ".tiff")
+
+# As of star.distance_au in presets. [au]
+_NEAREST, _FARTHEST = 1e-3, 1e5
 
 # Click shows the message of a click.BadParameter, but only the value of a ValueError.
 
@@ -92,12 +98,29 @@ def solar_longitude(text: str) -> float:
     return angle
 
 
-def day(text: str) -> date:
-    """Read a date such as ``2026-06-21``."""
+def sun_distance(text: str) -> float | str:
+    """Read a distance in au, ``mean`` or ``date``."""
+    if text in {"mean", "date"}:
+        return text
+    try:
+        distance = float(text.strip().casefold().removesuffix("au"))
+    except ValueError:
+        distance = math.nan
+    if not _NEAREST <= distance <= _FARTHEST:
+        raise click.BadParameter(
+            f"must be mean, date or a number of au from {_NEAREST:g} to {_FARTHEST:g}, got {text!r}"
+        )
+    return distance
+
+
+def day(text: str) -> date | str:
+    """Read a date such as ``2026-06-21``, or a key of `DAYS_FROM_TODAY`."""
+    if text.lower() in DAYS_FROM_TODAY:
+        return text.lower()
     if re.fullmatch(r"\d{4}-\d\d-\d\d", text, re.ASCII):
         with suppress(ValueError):
             return date.fromisoformat(text)
-    raise click.BadParameter(f"must be a date such as 2026-06-21, got {text!r}")
+    raise click.BadParameter(f"must be a date such as 2026-06-21, or today, got {text!r}")
 
 
 def length(text: str) -> float:
@@ -116,7 +139,9 @@ def altitude(text: str) -> float:
 def size(text: str) -> tuple[int, ...]:
     """Read width and height, or an edge: ``4096x2048``, ``1024``."""
     if not re.fullmatch(r"\d{1,9}(x\d{1,9})?", text, re.ASCII):
-        raise click.BadParameter(f"must be such as 4096x2048, or 1024 for a cubemap, got {text!r}")
+        raise click.BadParameter(
+            f"must be such as 4096x2048, or 1024 for a map 2:1 or a cubemap, got {text!r}"
+        )
     return tuple(int(number) for number in text.split("x"))
 
 
@@ -226,14 +251,21 @@ def ramp(read: Callable[[str], float]) -> Callable[[str], Ramp]:
         if "..." in text:
             raise click.BadParameter(f"must have two dots between two values, got {text}")
         first, dots, last = text.partition("..")
-        found = Ramp(read(first), read(last if dots else first))
         unit = last.lstrip("+-.0123456789 ")
-        # In 5..10km users mean kilometres, but a bare 5 is metres.
-        if unit and first.strip()[-1].isdigit() and read(first + unit) != found.first:
+        # In 1..2rad users mean radians, but a bare 1 is in degrees.
+        if unit and first.strip()[-1:].isdigit() and not _is_same(read, first, first + unit):
             raise click.BadParameter(f"must have a unit on both sides, got {text}")
-        return found
+        return Ramp(read(first), read(last if dots else first))
 
     return read_ramp
+
+
+def _is_same(read: Callable[[str], float], text: str, other: str) -> bool:
+    """Whether two texts mean the same; one that means nothing does not."""
+    try:
+        return read(text) == read(other)
+    except click.BadParameter:
+        return False
 
 
 _NUMBER = r"[+-]?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?"
@@ -277,12 +309,16 @@ def with_suffix(
 ) -> Callable[[click.Context, click.Parameter, Paths], Paths]:
     """Return a callback of an option that checks the suffix of its path or paths."""
 
+    def is_map(path: Path) -> bool:
+        return ".exr" in suffixes and path.suffix.lower() in _PICTURES
+
     def check(context: click.Context, option: click.Parameter, value: Paths) -> Paths:
         for path in value if isinstance(value, tuple) else (value,):
             if path is not None and path.suffix.lower() not in suffixes:
                 known = " or ".join(suffixes)
+                hint = "; a picture to look at is written by --preview" if is_map(path) else ""
                 raise click.BadParameter(
-                    f"{path}: suffix must be {known}, got {path.suffix!r}", context, option
+                    f"{path}: suffix must be {known}, got {path.suffix!r}{hint}", context, option
                 )
         return value
 
@@ -291,7 +327,7 @@ def with_suffix(
 
 def _hemisphere(text: str, positive: str, negative: str) -> float:
     """Read an angle that may end in the letter of a hemisphere instead of having a sign. [rad]"""
-    letter = text.strip()[-1:]
+    letter = text.strip()[-1:].upper()
     if letter not in (positive, negative):
         return _parse(text, parse_angle)
     angle = _parse(text.strip()[:-1], parse_angle)
