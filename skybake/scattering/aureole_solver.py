@@ -34,13 +34,13 @@ from skybake.transport.samples import allocate_samples
 from skybake.transport.shells import altitude_shells
 from skybake.transport.trace import trace
 
-LEAST_PEAK = 0.02
+LEAST_PEAK = 0.03
 """Share of the scattered light in a peak from which its paths matter."""
 
 RINGS = 12
 """Angles from the sun at which light is traced."""
 
-SIDES = 2
+SIDES = 3
 """Position angles on either side of the horizon at which it is."""
 
 SERIES = 48
@@ -160,7 +160,7 @@ def _peak_moments(atmosphere: Atmosphere) -> Array:
 
 
 def _peaks_of_straight(atmosphere: Atmosphere, rays: Array, workers: Workers) -> Array:
-    """Radiance that peaks scatter out of the sun's straight light, shape (node, ray, wavelength)."""
+    """Radiance that peaks scatter out of straight light, shape (node, ray, wavelength)."""
     scaled = atmosphere.scaled
     constituents = scaled.medium.phase.shape[0]
     peaks = scaled.phase[constituents:]
