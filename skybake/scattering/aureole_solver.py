@@ -46,6 +46,9 @@ SIDES = 3
 SERIES = 48
 """Highest Legendre order of what a peak scatters of the difference, which is smooth."""
 
+FADES_FROM = math.radians(35.0)
+"""Angle from the sun beyond which the difference fades, so that no edge is seen at the last."""
+
 SHELLS = 20
 ARC = math.radians(1.5)
 
@@ -119,6 +122,7 @@ def solve_aureole(
     moments = _peak_moments(atmosphere)
     first = _peaks_of_straight(atmosphere, rays, workers).reshape(*shape, -1)
     first -= _straight(atmosphere, grid, around, moments)[:, :, :, None]
+    first *= _fade(np.arccos(around.cosine))[:, None, None]
     aureole = _scattered(atmosphere, grid, around, moments, first)
     difference = first + _transport(atmosphere, aureole, field, rays, workers).reshape(first.shape)
     return (
@@ -149,6 +153,12 @@ def _directions(r_bottom: float, grid: Grid) -> Directions:
         position_weight=np.concatenate([edge * share, (math.pi - edge) * share], axis=-1),
         mu=mu,
     )
+
+
+def _fade(angle: Array) -> Array:
+    fading = np.clip((angle - FADES_FROM) / (LAST_ANGLE - FADES_FROM), 0.0, 1.0)
+    share: Array = np.cos(0.5 * math.pi * fading) ** 2
+    return share
 
 
 def _peak_moments(atmosphere: Atmosphere) -> Array:
@@ -223,7 +233,8 @@ def _scattered(
     share /= np.maximum(share.sum(axis=1, keepdims=True), 1e-300)
     harmonics = build_harmonics(SERIES)
     at_rings = harmonics_at(harmonics, around.cosine) * around.weight[:, None]
-    at_angles = harmonics_at(harmonics, np.cos(np.linspace(0.0, LAST_ANGLE, ANGLES)))
+    angles = np.linspace(0.0, LAST_ANGLE, ANGLES)
+    at_angles = harmonics_at(harmonics, np.cos(angles)) * _fade(angles)[:, None]
     source = np.empty((*radiance.shape[:2], ANGLES, ORDERS, radiance.shape[-1]), np.float32)
     for m in range(ORDERS):
         order = harmonics.azimuthal == m
