@@ -34,17 +34,20 @@ from skybake.transport.samples import allocate_samples
 from skybake.transport.shells import altitude_shells
 from skybake.transport.trace import trace
 
-LEAST_PEAK = 0.02
+LEAST_PEAK = 0.03
 """Share of the scattered light in a peak from which its paths matter."""
 
 RINGS = 12
 """Angles from the sun at which light is traced."""
 
-SIDES = 2
+SIDES = 3
 """Position angles on either side of the horizon at which it is."""
 
 SERIES = 48
 """Highest Legendre order of what a peak scatters of the difference, which is smooth."""
+
+FADES_FROM = math.radians(35.0)
+"""Angle from the sun beyond which the difference fades, so that no edge is seen at the last."""
 
 SHELLS = 20
 ARC = math.radians(1.5)
@@ -119,6 +122,7 @@ def solve_aureole(
     moments = _peak_moments(atmosphere)
     first = _peaks_of_straight(atmosphere, rays, workers).reshape(*shape, -1)
     first -= _straight(atmosphere, grid, around, moments)[:, :, :, None]
+    first *= _fade(np.arccos(around.cosine))[:, None, None]
     aureole = _scattered(atmosphere, grid, around, moments, first)
     difference = first + _transport(atmosphere, aureole, field, rays, workers).reshape(first.shape)
     return (
@@ -151,6 +155,12 @@ def _directions(r_bottom: float, grid: Grid) -> Directions:
     )
 
 
+def _fade(angle: Array) -> Array:
+    fading = np.clip((angle - FADES_FROM) / (LAST_ANGLE - FADES_FROM), 0.0, 1.0)
+    share: Array = np.cos(0.5 * math.pi * fading) ** 2
+    return share
+
+
 def _peak_moments(atmosphere: Atmosphere) -> Array:
     """Legendre moments of each constituent's peak, shape (constituent, order + 1, wavelength)."""
     scaled = atmosphere.scaled
@@ -160,7 +170,7 @@ def _peak_moments(atmosphere: Atmosphere) -> Array:
 
 
 def _peaks_of_straight(atmosphere: Atmosphere, rays: Array, workers: Workers) -> Array:
-    """Radiance that peaks scatter out of the sun's straight light, shape (node, ray, wavelength)."""
+    """Radiance that peaks scatter out of straight light, shape (node, ray, wavelength)."""
     scaled = atmosphere.scaled
     constituents = scaled.medium.phase.shape[0]
     peaks = scaled.phase[constituents:]
@@ -223,7 +233,8 @@ def _scattered(
     share /= np.maximum(share.sum(axis=1, keepdims=True), 1e-300)
     harmonics = build_harmonics(SERIES)
     at_rings = harmonics_at(harmonics, around.cosine) * around.weight[:, None]
-    at_angles = harmonics_at(harmonics, np.cos(np.linspace(0.0, LAST_ANGLE, ANGLES)))
+    angles = np.linspace(0.0, LAST_ANGLE, ANGLES)
+    at_angles = harmonics_at(harmonics, np.cos(angles)) * _fade(angles)[:, None]
     source = np.empty((*radiance.shape[:2], ANGLES, ORDERS, radiance.shape[-1]), np.float32)
     for m in range(ORDERS):
         order = harmonics.azimuthal == m
