@@ -37,10 +37,10 @@ from skybake.transport.trace import trace
 LEAST_PEAK = 0.03
 """Share of the scattered light in a peak from which its paths matter."""
 
-RINGS = 12
+RINGS = 10
 """Angles from the sun at which light is traced."""
 
-SIDES = 3
+SIDES = 2
 """Position angles on either side of the horizon at which it is."""
 
 SERIES = 48
@@ -49,8 +49,8 @@ SERIES = 48
 FADES_FROM = math.radians(35.0)
 """Angle from the sun beyond which the difference fades, so that no edge is seen at the last."""
 
-SHELLS = 20
-ARC = math.radians(1.5)
+SHELLS = 15
+ARC = math.radians(2.0)
 
 
 class Directions(NamedTuple):

@@ -35,7 +35,7 @@ from skybake.transport.samples import allocate_samples
 from skybake.transport.shells import altitude_shells
 from skybake.transport.trace import trace
 
-FIRST_SHELLS = 30
+FIRST_SHELLS = 22
 SHELLS = 20
 TOLERANCE = 5e-3
 """Relative change by the scatterings that follow the last pass, at which iteration ends; of
@@ -57,7 +57,7 @@ DIVERGED = 0.5
 SURE_PASSES = 40
 
 ARC = math.radians(2.0)
-FIRST_ARC = math.radians(1.5)
+FIRST_ARC = math.radians(2.0)
 
 
 def solve_light(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> Atmosphere:
