@@ -130,6 +130,16 @@ def error_rows(measured: dict[tuple[str, str, float], Comparison]) -> Iterator[l
                     yield [name, label, band, size, bound, *summary(parts)]
 
 
+def sharp_rows() -> Iterator[list[str]]:
+    """Errors of the default method beside the tables of low noise."""
+    for name in ("twilight_EARTH_A", "twilight_MARS_A", "aureole_MARS_MIE"):
+        for altitude, sun in places(load_truth(name)):
+            part = compare(name, "full", (altitude,), (sun,))
+            noise = f"{100 * np.median(part.noise):.2f}"
+            worst = place_of(part, int(np.abs(part.error).argmax()))
+            yield [name, f"{sun:g}", str(part.error.size), noise, *summary([part]), worst]
+
+
 def worst_rows(measured: dict[tuple[str, str, float], Comparison]) -> Iterator[list[str]]:
     """Where the default method is off most."""
     for (name, method, altitude), whole in measured.items():
@@ -291,6 +301,10 @@ def main() -> None:
         "errors": table(
             ["atmosphere", "altitude", "sun [deg]", "rows", "aim: rms", *columns],
             error_rows(measured),
+        ),
+        "sharp": table(
+            ["table", "sun [deg]", "rows", "table's noise", *numbers, "place of the worst"],
+            sharp_rows(),
         ),
         "worst": table(
             ["atmosphere", "altitude", "sun or horizon", "error", "table's noise", "place"],
