@@ -1,6 +1,6 @@
 """Makes the gallery of all presets: ``python docs/make_gallery.py``, in some minutes.
 
-One equirect map a world and sun elevation, each exposed by itself and shown through ACES 2.0.
+One equirect map a world and sun elevation, each exposed, and balanced, by itself.
 Needs Pillow.
 """
 

@@ -22,6 +22,9 @@ PICTURES = {
     "equirect": LOW.image("equirect", 2 * HEIGHT),
     "cubemap --cube-layout cross": LOW.image("cubemap", HEIGHT // 3, layout="cross"),
     "fisheye": LOW.image("fisheye", HEIGHT),
+    "angular": LOW.image("angular", HEIGHT),
+    "octahedral": LOW.image("octahedral", HEIGHT),
+    "--cube-layout vertical-cross": LOW.image("cubemap", HEIGHT // 4, layout="vertical-cross"),
     "perspective --look 200,12 --fov 70deg": LOW.image(
         "perspective",
         (512, HEIGHT),
@@ -33,7 +36,11 @@ PICTURES = {
         "perspective", (512, HEIGHT), fov=math.radians(40.0), elevation=math.radians(-18.0)
     ),
 }
-ROWS = (("equirect", "cubemap --cube-layout cross"), tuple(PICTURES)[2:])
+ROWS = (
+    ("equirect", "cubemap --cube-layout cross"),
+    ("fisheye", "angular", "octahedral", "--cube-layout vertical-cross"),
+    tuple(name for name in PICTURES if name.startswith("perspective")),
+)
 
 
 def main() -> None:

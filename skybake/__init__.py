@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     )
     from skybake.image.image import Image
     from skybake.image.light import Light
+    from skybake.image.picture_settings import PictureSettings
     from skybake.image.scene import Scene
     from skybake.image.settings import Encoding, Lighting, MapSettings, View, map_settings
     from skybake.jit.workers import Workers
@@ -56,7 +57,15 @@ if TYPE_CHECKING:
         load_preset,
         preset_names,
     )
-    from skybake.projection import Cubemap, Equirect, Fisheye, Perspective, Projection
+    from skybake.projection import (
+        Angular,
+        Cubemap,
+        Equirect,
+        Fisheye,
+        Octahedral,
+        Perspective,
+        Projection,
+    )
     from skybake.sequence.bake import bake_sequence
     from skybake.sequence.exposure_curve import ExposureCurve
     from skybake.sequence.frame import FrameOutcome
@@ -70,6 +79,7 @@ __all__ = [
     "SITES",
     "Absorber",
     "Aerosol",
+    "Angular",
     "ArgumentError",
     "Baked",
     "CancelledError",
@@ -96,10 +106,12 @@ __all__ = [
     "Lighting",
     "MapSettings",
     "Moment",
+    "Octahedral",
     "OutputError",
     "Override",
     "Perspective",
     "Phase",
+    "PictureSettings",
     "Pipeline",
     "Place",
     "Plan",
@@ -139,6 +151,7 @@ __all__ = [
 _HOMES = {
     "Absorber": "skybake.preset",
     "Aerosol": "skybake.preset",
+    "Angular": "skybake.projection",
     "ArgumentError": "skybake.errors",
     "Baked": "skybake.baking",
     "CancelledError": "skybake.errors",
@@ -165,10 +178,12 @@ _HOMES = {
     "Lighting": "skybake.image.settings",
     "MapSettings": "skybake.image.settings",
     "Moment": "skybake.ephemeris.moment",
+    "Octahedral": "skybake.projection",
     "OutputError": "skybake.errors",
     "Override": "skybake.preset",
     "Perspective": "skybake.projection",
     "Phase": "skybake.preset",
+    "PictureSettings": "skybake.image.picture_settings",
     "Pipeline": "skybake.pipeline",
     "Place": "skybake.ephemeris.place",
     "Plan": "skybake.sequence.plan",

@@ -179,7 +179,7 @@ def main() -> None:
       skybake render
       skybake render --sun 5deg --preset mars
       skybake presets list
-      skybake preview earth_sun+30.00deg_equirect.exr -o earth.png
+      skybake preview earth_sun30.00deg_equirect.exr -o earth.png
 
     Exit status: 0 done, 1 failed, 2 wrong usage, 3 some frames failed, 130 interrupted,
     143 terminated.

@@ -1,9 +1,10 @@
-"""Quantities as users type them, with or without a unit: "5deg", "2km", "30000ft", "1h30min"."""
+"""Quantities as users type them, "5deg", "2km", "30000ft", "1h30min", and as files state them."""
 
 from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 
 from skybake.errors import InputError
 
@@ -12,13 +13,19 @@ _RADIANS = {
     "rad": 1.0,
     "arcmin": math.pi / 10_800.0,
     "arcsec": math.pi / 648_000.0,
+    "°": math.pi / 180.0,
 }
 _KILOMETRES = {"m": 1e-3, "km": 1.0, "ft": 0.3048e-3, "mi": 1.609344}
 
+_DIGITS = 17  # of a double
+
 _SECONDS = {"s": 1.0, "min": 60.0, "h": 3600.0, "d": 86_400.0}
 
-_QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-zA-Z]*)", re.ASCII)
+_QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-zA-Z°]*)", re.ASCII)
 _DURATION_PART = r"([0-9]+\.?[0-9]*|\.[0-9]+)(s|min|h|d)"
+
+# A mega, a mile or a nautical mile rather than a metre.
+_AMBIGUOUS = ("M",)
 
 
 def parse_angle(text: str) -> float:
@@ -27,7 +34,8 @@ def parse_angle(text: str) -> float:
     Parameters
     ----------
     text : str
-        A number and a unit: deg, rad, arcmin or arcsec; a bare number is in degrees.
+        A number and a unit: deg, rad, arcmin or arcsec, or the sign of degrees; a
+        bare number is in degrees. Units may be in capitals.
 
     Returns
     -------
@@ -43,12 +51,13 @@ def parse_angle(text: str) -> float:
 
 
 def parse_length(text: str) -> float:
-    """Read a length such as ``2km``, ``1500m``, ``30000ft`` or ``12``.
+    """Read a length such as ``2km``, ``1500m`` or ``30000ft``.
 
     Parameters
     ----------
     text : str
-        A number and a unit: m, km, ft or mi; a bare number is in metres.
+        A number and a unit: m, km, ft or mi, which may be in capitals, except M; only 0
+        needs none.
 
     Returns
     -------
@@ -60,7 +69,7 @@ def parse_length(text: str) -> float:
     InputError
         If the text is no finite number with one of these units.
     """
-    return _parse(text, _KILOMETRES, bare="m", quantity="a length", example="2km")
+    return _parse(text, _KILOMETRES, bare=None, quantity="a length", example="2km")
 
 
 def parse_column(text: str) -> float:
@@ -69,7 +78,7 @@ def parse_column(text: str) -> float:
     Parameters
     ----------
     text : str
-        A number and the unit DU; a bare number is in Dobson units.
+        A number and the unit DU, in capitals or not; a bare number is in Dobson units.
 
     Returns
     -------
@@ -90,7 +99,7 @@ def parse_duration(text: str) -> float:
     Parameters
     ----------
     text : str
-        Numbers, each with a unit: s, min, h or d.
+        Numbers, each with a unit: s, min, h or d, which may be in capitals.
 
     Returns
     -------
@@ -102,9 +111,10 @@ def parse_duration(text: str) -> float:
     InputError
         If the text is no finite duration with these units.
     """
-    parts = re.findall(_DURATION_PART, text.strip())
+    lower = text.strip().lower()
+    parts = re.findall(_DURATION_PART, lower)
     value = sum(float(number) * _SECONDS[unit] for number, unit in parts)
-    if not re.fullmatch(f"({_DURATION_PART})+", text.strip()) or not math.isfinite(value):
+    if not re.fullmatch(f"({_DURATION_PART})+", lower) or not math.isfinite(value):
         raise InputError(
             f"must be a duration such as 10min or 1h30min (units: {', '.join(_SECONDS)}), "
             f"got {text!r}"
@@ -112,13 +122,53 @@ def parse_duration(text: str) -> float:
     return value
 
 
-def _parse(text: str, units: dict[str, float], *, bare: str, quantity: str, example: str) -> float:
+def degrees(angle: float) -> float:
+    """Return an angle in degrees, in the fewest digits that mean the same angle.
+
+    By `math.degrees` the radians of 30 deg are 29.999999999999996 deg.
+    """
+    return _shortest(math.degrees(angle), lambda value: math.radians(value) == angle)
+
+
+def metres(length: float) -> float:
+    """Return a length in metres of one in kilometres, in the fewest digits that mean the same."""
+    return _shortest(length * 1e3, lambda value: value * 1e-3 == length or value / 1e3 == length)
+
+
+def _shortest(exact: float, is_same: Callable[[float], bool]) -> float:
+    for digits in range(1, _DIGITS):
+        short = float(f"{exact:.{digits}g}")
+        if is_same(short):
+            return short
+    return exact
+
+
+def _parse(
+    text: str, units: dict[str, float], *, bare: str | None, quantity: str, example: str
+) -> float:
+    """Read a number and a unit; `bare` is the unit of a number without, None if only 0 may be."""
     match = _QUANTITY.fullmatch(text.strip())
-    unit = match[2] or bare if match else ""
-    value = float(match[1]) * units[unit] if match and unit in units else math.nan
+    number = float(match[1]) if match else math.nan
+    unit = bare if match and not match[2] else _unit(match[2], units) if match else None
+    known = ", ".join(name for name in units if name.isascii())
+    if match and not match[2] and bare is None and math.isfinite(number):
+        if number == 0.0:
+            return 0.0
+        likely = " or ".join(f"{match[1]}{name}" for name in list(units)[:2])
+        raise InputError(f"needs a unit, such as {likely} (units: {known}), got {text!r}")
+    value = number * units[unit] if unit is not None else math.nan
     if not math.isfinite(value):
+        rule = "" if bare is None else f"; a bare number is in {bare}"
         raise InputError(
-            f"must be {quantity} such as {example} (units: {', '.join(units)}; "
-            f"a bare number is in {bare}), got {text!r}"
+            f"must be {quantity} such as {example} (units: {known}{rule}), got {text!r}"
         )
     return value
+
+
+def _unit(text: str, units: dict[str, float]) -> str | None:
+    """Return the unit that a text means in any case, or None."""
+    if text in units:
+        return text
+    if text in _AMBIGUOUS:
+        return None
+    return next((unit for unit in units if unit.lower() == text.lower()), None)

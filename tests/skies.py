@@ -6,6 +6,7 @@ import numpy as np
 
 from skybake.angles import cosine_between
 from skybake.scattering.atmosphere import load_atmosphere
+from skybake.scattering.aureole import no_aureole
 from skybake.sky.observer import Observer
 from skybake.sky.single import SingleSkylight
 from skybake.sky.skylight import Skylight
@@ -38,7 +39,9 @@ def first_order(skylight):
     dark = field._replace(
         radiance=np.zeros_like(field.radiance), ground=np.zeros_like(field.ground)
     )
-    atmosphere = skylight.atmosphere._replace(field=dark)
+    atmosphere = skylight.atmosphere._replace(
+        field=dark, aureole=no_aureole(skylight.atmosphere.scaled)
+    )
     return Skylight(atmosphere, skylight.observer, skylight.sources)
 
 

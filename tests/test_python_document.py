@@ -37,4 +37,6 @@ def test_the_examples_run_in_their_order_and_write_their_files(tmp_path):
         "gale.exr",
         "hazy.exr",
         *(f"storm.{number:04}.exr" for number in range(1, 4)),
+        "west.exr",
+        "west.png",
     ]

@@ -41,7 +41,7 @@ def shell(tmp_path):
 
 
 def test_two_commands_set_it_up():
-    assert RENDER == "pip install . && skybake render --sun 5deg --preset mars\n"
+    assert RENDER == "pip install . && skybake render --sun 5deg --preset mars --preview\n"
     assert TEST == 'pip install ".[test]" && pytest\n'
 
 

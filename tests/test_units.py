@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from skybake.errors import InputError
-from skybake.units import parse_angle, parse_duration, parse_length
+from skybake.units import degrees, metres, parse_angle, parse_duration, parse_length
 
 
 @pytest.mark.parametrize(
@@ -21,6 +21,10 @@ from skybake.units import parse_angle, parse_duration, parse_length
         ("960arcsec", math.radians(960.0 / 3600.0)),
         ("1e-3rad", 1e-3),
         (" .5deg ", math.radians(0.5)),
+        ("5°", math.radians(5.0)),
+        ("-5 °", math.radians(-5.0)),
+        ("5DEG", math.radians(5.0)),
+        ("0.1Rad", 0.1),
     ],
 )
 def test_an_angle_is_read_in_its_unit_and_in_degrees_without_one(text, radians):
@@ -33,13 +37,17 @@ def test_an_angle_is_read_in_its_unit_and_in_degrees_without_one(text, radians):
         ("2km", 2.0),
         ("400km", 400.0),
         ("1500m", 1.5),
-        ("12", 0.012),
+        ("400KM", 400.0),
+        ("400Km", 400.0),
+        ("30000FT", 9.144),
+        ("0", 0.0),
+        ("-0.0", 0.0),
         ("30000ft", 9.144),
         ("1mi", 1.609344),
         ("-5m", -0.005),
     ],
 )
-def test_a_length_is_read_in_its_unit_and_in_metres_without_one(text, kilometres):
+def test_a_length_is_read_in_its_unit_in_capitals_or_not(text, kilometres):
     assert parse_length(text) == pytest.approx(kilometres, rel=1e-15)
 
 
@@ -56,12 +64,23 @@ def test_what_is_no_finite_angle_is_refused_with_the_known_units(text):
     )
 
 
-@pytest.mark.parametrize("text", ["2deg", "two km", "nan", "inf", "1e999km", "2,5km", "5 k m"])
+@pytest.mark.parametrize(
+    "text", ["2deg", "two km", "nan", "inf", "1e999km", "2,5km", "5 k m", "400M", "5mM", "5MM"]
+)
 def test_what_is_no_finite_length_is_refused_with_the_known_units(text):
     with pytest.raises(InputError) as caught:
         parse_length(text)
     assert str(caught.value) == (
-        f"must be a length such as 2km (units: m, km, ft, mi; a bare number is in m), got {text!r}"
+        f"must be a length such as 2km (units: m, km, ft, mi), got {text!r}"
+    )
+
+
+@pytest.mark.parametrize("text", ["400", "-1", "2.5e3"])
+def test_a_length_without_a_unit_is_refused_with_two_that_may_be_meant(text):
+    with pytest.raises(InputError) as caught:
+        parse_length(text)
+    assert str(caught.value) == (
+        f"needs a unit, such as {text}m or {text}km (units: m, km, ft, mi), got {text!r}"
     )
 
 
@@ -75,6 +94,8 @@ def test_what_is_no_finite_length_is_refused_with_the_known_units(text):
         ("1d2h3min4.5s", 93784.5),
         (" .5h ", 1800.0),
         ("0s", 0.0),
+        ("10MIN", 600.0),
+        ("1H30Min", 5400.0),
     ],
 )
 def test_a_duration_is_the_sum_of_its_parts(text, seconds):
@@ -112,6 +133,20 @@ def test_a_length_survives_being_written_and_read(value, unit):
     assert parse_length(f"{value!r} {name}") == pytest.approx(
         value * kilometres, rel=1e-15, abs=0.0
     )
+
+
+@given(st.floats(-360.0, 360.0).map(lambda value: round(value, 6)))
+def test_an_angle_is_stated_as_it_was_typed(value):
+    assert degrees(parse_angle(f"{value}deg")) == value
+    assert math.radians(degrees(value / 7)) == pytest.approx(value / 7, rel=1e-15)
+
+
+@given(st.integers(0, 10**9), st.sampled_from(["m", "km"]))
+def test_a_length_is_stated_as_it_was_typed(value, unit):
+    assert metres(parse_length(f"{value / 10}{unit}")) == pytest.approx(
+        value / 10 * (1000 if unit == "km" else 1), rel=1e-15
+    )
+    assert len(repr(metres(parse_length(f"{value / 10}m")))) <= len(repr(value / 10))
 
 
 @given(st.text())

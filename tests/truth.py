@@ -26,6 +26,8 @@ _SHORT_NAMES = {
 def load_truth(name: str) -> np.ndarray:
     """Reference radiances of "EARTH_A", "EARTH_HAZE" or "MARS_A", at all their altitudes.
 
+    With the prefix "twilight_" or "aureole_" those of the low-noise tables.
+
     Returns
     -------
     structured ndarray, shape (row,)
@@ -50,7 +52,13 @@ def load_irradiance_truth(name: str) -> np.ndarray:
 
 def truth_medium(name: str) -> Medium:
     """One of the atmospheres the tables were computed for, at `TRUTH_WAVELENGTHS`."""
-    return {"EARTH_A": _earth_a, "EARTH_HAZE": _earth_haze, "MARS_A": _mars_a}[name]()
+    atmospheres = {
+        "EARTH_A": _earth_a,
+        "EARTH_HAZE": _earth_haze,
+        "MARS_A": _mars_a,
+        "MARS_MIE": _mars_mie,
+    }
+    return atmospheres[name.removeprefix("twilight_").removeprefix("aureole_")]()
 
 
 def rayleigh(theta: Array) -> Array:
@@ -178,3 +186,14 @@ def _mars_a() -> Medium:
         ],
         ground_albedo=np.array([0.28, 0.16, 0.06]),
     )
+
+
+def _mars_mie() -> Medium:
+    grey = _mars_a()
+    table = np.genfromtxt(_FOLDER / "mars_dust_mie_phase.csv", delimiter=",", skip_header=1)
+    mu, cosine = np.cos(scattering_angles()), np.cos(np.radians(table[:, 0]))
+    dust = np.stack([np.interp(-mu, -cosine, each) for each in table[:, 1:].T], axis=1)
+    dust /= 2.0 * np.pi * np.trapezoid(dust, -mu, axis=0)
+    scattering = grey.scattering.copy()
+    scattering[1] = np.array([0.9720, 0.8980, 0.7884]) * grey.extinction[1]
+    return grey._replace(scattering=scattering, phase=np.stack([grey.phase[0], dust]))

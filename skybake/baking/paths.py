@@ -19,26 +19,32 @@ LONGEST_VALUE = 12
 LONGEST_CHANGES = 40
 """Longest value, and longest of all changes together, that is part of a name. [character]"""
 
-_SAFE = re.compile(r"[A-Za-z0-9_.+-]+")
+_SAFE = re.compile(r"[A-Za-z0-9_.-]+")
 _DISCS = {"include": "", "exclude": "nodisc", "only": "disc"}
 
 
 def default_path(planet: Planet, settings: MapSettings) -> Path:
-    """Name that describes a map, as ``mars_sun+05.00deg_equirect.exr``.
+    """Name that describes a map, as ``mars_sun05.00deg_equirect.exr``.
 
     What was changed of the preset follows its name, as
-    ``mars_dust.optical_depth=2_sun+05.00deg_equirect.exr``, or, if that is long, six
+    ``mars_dust.optical_depth=2_sun05.00deg_equirect.exr``, or, if that is long, six
     digits of its digest; settings other than the default ones follow the sun, such that
     maps of different light have different names. Size, pixel type and compression do not show.
     """
     view, lighting, encoding = settings.view, settings.lighting, settings.encoding
     parts = (
         world_name(planet),
-        f"sun{math.degrees(lighting.sun_elevation):+06.2f}deg",
+        # A plus would be a blank in the query of a URL.
+        f"sun{f'{math.degrees(lighting.sun_elevation):+06.2f}'.lstrip('+')}deg",
         _bearing(lighting.sun_azimuth),
+        "" if lighting.sun_distance is None else f"{lighting.sun_distance:.4f}au",
+        _rotation(view.rotation),
         f"{view.altitude * 1e3:g}m" if view.altitude > 0.0 else "",
         lighting.method if lighting.method != PLAIN_LIGHTING.method else "",
         _DISCS[lighting.sun_disc],
+        "" if lighting.sun_size is None else f"size{math.degrees(lighting.sun_size):g}deg",
+        "soft" if lighting.sun_soft else "",
+        f"strength{lighting.sun_strength:g}" if lighting.sun_strength != 1.0 else "",
         encoding.colorspace if encoding.colorspace != PLAIN_ENCODING.colorspace else "",
         _scale(encoding),
         "clamped" if encoding.clamp_negative else "",
@@ -69,6 +75,11 @@ def _changes_name(changes: Mapping[str, Any]) -> str:
 def _bearing(azimuth: float) -> str:
     degrees = round(math.degrees(azimuth), 2) % 360.0
     return "" if degrees == math.degrees(PLAIN_LIGHTING.sun_azimuth) else f"az{degrees:06.2f}deg"
+
+
+def _rotation(angle: float) -> str:
+    degrees = round(math.degrees(angle), 2) % 360.0
+    return f"rot{degrees:g}deg" if degrees else ""
 
 
 def _scale(encoding: Encoding) -> str:

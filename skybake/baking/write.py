@@ -5,30 +5,26 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
-from typing import Literal
 
-import numpy as np
-
+from skybake.baking.losses import HalfLoss, scene_warnings
 from skybake.baking.paths import default_path, map_paths
-from skybake.formats.preview import check_preview, open_preview
+from skybake.baking.pixel_type import PixelType, fitting_pixel, value_range
+from skybake.formats.preview import check_preview
 from skybake.formats.scanlines import Rows
 from skybake.formats.spec import Attribute, MapSpec
 from skybake.formats.whole_files import WholeFiles
 from skybake.formats.writer import MapWriter, check_map_path, open_maps
 from skybake.image.light import Light, attributes_from_light, light_of_scene
-from skybake.image.picture import PREVIEW_WIDTH, scene_ev, show_scene
+from skybake.image.picture_settings import PictureSettings
 from skybake.image.raster import Raster
-from skybake.image.recipe import preview_texts, recipe_attributes
+from skybake.image.recipe import recipe_attributes
 from skybake.image.scene import Scene
 from skybake.image.settings import MapSettings
 from skybake.jit.workers import Workers
 from skybake.preset import Planet, load_preset
 
 BAND_ROWS = 128
-HALF_LARGEST = 60000.0
-HALF_SMALLEST = 2.0**-14
 
 Progress = Callable[[float], None]
 
@@ -49,8 +45,12 @@ class Baked(Light):
         The display-referred picture.
     preview_ev : float or None
         Exposure value of the picture.
+    preview_white : tuple of float or None
+        CIE xy of the light that is white in it; None for D65.
     clamped : int
         Negative values that became 0 in a format without a sign.
+    warnings : tuple of str
+        What the files lose of the light, or why it may not be what was meant, a line each.
     """
 
     files: tuple[Path, ...]
@@ -58,7 +58,9 @@ class Baked(Light):
     pixel: str
     preview: Path | None
     preview_ev: float | None
+    preview_white: tuple[float, float] | None
     clamped: int
+    warnings: tuple[str, ...] = ()
 
 
 def bake(
@@ -67,8 +69,7 @@ def bake(
     settings: MapSettings | None = None,
     *,
     preview: Path | str | None = None,
-    preview_ev: float | None = None,
-    preview_view: str = "aces2",
+    picture: PictureSettings | None = None,
     attributes: Mapping[str, Attribute] | None = None,
     progress: Progress | None = None,
     notice: Callable[[str], None] | None = None,
@@ -86,10 +87,8 @@ def bake(
         Sun, observer, map, colour and pixels.
     preview : Path or str, optional
         Also write a display-referred PNG here.
-    preview_ev : float, optional
-        Its exposure value; by default chosen from the picture.
-    preview_view : {"aces2", "aces1"}, optional
-        Its rendering.
+    picture : PictureSettings, optional
+        How it shows the map.
     attributes : mapping of str to Attribute, optional
         What the files shall state besides their light and their recipe, such as
         ``{"skybake:time": "2026-06-21T04:00:00Z"}``.
@@ -112,7 +111,7 @@ def bake(
     planet = preset if isinstance(preset, Planet) else load_preset(preset)
     output = Path(output) if output else default_path(planet, settings)
     preview = None if preview is None else Path(preview)
-    check_targets(output, settings, preview, preview_view)
+    check_targets(output, settings, preview)
     scene = Scene(planet, settings)
     if notice is not None and not scene.sky.is_solved:
         notice("solving for the light in this atmosphere, once")
@@ -120,16 +119,13 @@ def bake(
         scene,
         output,
         preview=preview,
-        preview_ev=preview_ev,
-        preview_view=preview_view,
+        picture=picture,
         attributes=attributes,
         progress=progress,
     )
 
 
-def check_targets(
-    output: Path, settings: MapSettings, preview: Path | None = None, preview_view: str = "aces2"
-) -> None:
+def check_targets(output: Path, settings: MapSettings, preview: Path | None = None) -> None:
     """Raise the errors of a map's files that can be found before anything is computed.
 
     Raises
@@ -142,7 +138,7 @@ def check_targets(
     for path in map_paths(output, settings):
         check_map_path(path)
     if preview is not None:
-        check_preview(preview, preview_view)
+        check_preview(preview)
 
 
 def bake_scene(
@@ -150,15 +146,16 @@ def bake_scene(
     output: Path,
     *,
     preview: Path | None = None,
-    preview_ev: float | None = None,
-    preview_view: str = "aces2",
+    picture: PictureSettings | None = None,
     attributes: Mapping[str, Attribute] | None = None,
     progress: Progress | None = None,
     files: WholeFiles | None = None,
+    pixel: PixelType | None = None,
 ) -> Baked:
     """Bake the map of a scene.
 
-    Parameters and errors are those of `bake`, besides other files of the same set.
+    Parameters and errors are those of `bake`, besides other files of the same set, and what
+    `auto` shall stand for, see `pixel_type`.
     """
     planet, settings = scene.planet, scene.settings
     paths = map_paths(output, settings)
@@ -171,16 +168,20 @@ def bake_scene(
     encoding = settings.encoding
     canvases = settings.view.projection.canvases()
     rasters = {path: Raster(scene, one) for path, one in zip(paths, canvases, strict=True)}
-    pixel = _pixel(scene, max(raster.peak for raster in rasters.values()))
+    peak = max(raster.peak for raster in rasters.values())
+    largest, smallest = value_range(scene, peak)
+    warnings = scene_warnings(scene, peak)
+    stored = fitting_pixel(encoding.pixel, largest, smallest) if pixel is None else pixel
     specs = {
         path: MapSpec(
             raster.canvas.width,
             raster.canvas.height,
             encoding.space,
             encoding.white_luminance,
-            pixel=pixel,
+            pixel=stored,
             compression=encoding.compression,
             envmap=raster.canvas.envmap,
+            states_exposure=not encoding.omit_exposure,
             attributes=attributes,
         )
         for path, raster in rasters.items()
@@ -188,46 +189,32 @@ def bake_scene(
     with ExitStack() as stack:
         if files is None:
             files = stack.enter_context(WholeFiles())
-        draw = None
+        shown = None
         if preview is not None:
-            preview_ev = scene_ev(scene) if preview_ev is None else preview_ev
-            texts = preview_texts(planet, settings, preview_ev, preview_view)
-            small = settings.view.projection.smaller(PREVIEW_WIDTH).canvases()[0]
-            show = stack.enter_context(
-                open_preview(
-                    preview, view=preview_view, max_width=small.width, texts=texts, files=files
-                )
-            )
-            draw = partial(show_scene, scene, show, preview_ev)
+            from skybake.baking.picture import open_picture
+
+            look = picture or PictureSettings()
+            shown = open_picture(scene, preview, look, files, stack)
         writers = stack.enter_context(open_maps(specs, files))
-        _write(rasters, writers, scene.workers, progress)
-        if draw is not None:
-            draw()
+        is_radiance = paths[0].suffix.lower() == ".hdr"
+        loss = HalfLoss() if is_radiance or encoding.pixel == stored == "half" else None
+        _write(rasters, writers, scene.workers, progress, loss)
+        if loss is not None:
+            lost = loss.warning(paths[0])
+            warnings += [] if lost is None else [lost]
+        if shown is not None:
+            shown.draw()
     return Baked(
         **vars(light),
         files=paths,
         white_luminance=encoding.white_luminance,
-        pixel=pixel if paths[0].suffix.lower() == ".exr" else "rgbe",
+        pixel=stored if paths[0].suffix.lower() == ".exr" else "rgbe",
         preview=preview,
-        preview_ev=preview_ev,
+        preview_ev=None if shown is None else shown.ev,
+        preview_white=None if shown is None else shown.white,
         clamped=sum(writer.clamped for writer in writers.values()),
+        warnings=tuple(warnings),
     )
-
-
-def _pixel(scene: Scene, peak: float) -> Literal["half", "float"]:
-    """Type in which no value overflows and no sky value loses bits."""
-    encoding = scene.settings.encoding
-    if encoding.pixel != "auto":
-        return "half" if encoding.pixel == "half" else "float"
-    if "sky" not in scene.layer_names:
-        return "half" if peak < HALF_LARGEST else "float"
-    toward_sun = scene.evaluate(np.array([[scene.sun_zenith]]), np.zeros((1, 1)), 1e-9)
-    luminance = scene.survey @ (scene.luminance / encoding.white_luminance)
-    lit = luminance[luminance > 0.0]
-    largest = 1.1 * max(np.abs(scene.survey).max(), np.abs(toward_sun).max()) + peak
-    # The survey's texels are coarser than the map's, so the bounds keep a margin.
-    smallest = 0.5 * float(lit.min()) if lit.size else 1.0
-    return "half" if largest < HALF_LARGEST and smallest >= HALF_SMALLEST else "float"
 
 
 def _write(
@@ -235,6 +222,7 @@ def _write(
     writers: dict[Path, MapWriter],
     workers: Workers,
     progress: Progress | None,
+    loss: HalfLoss | None,
 ) -> None:
     bands = [
         (path, first, min(first + BAND_ROWS, raster.canvas.height))
@@ -244,7 +232,10 @@ def _write(
 
     def compute(band: tuple[Path, int, int]) -> Rows:
         path, first, last = band
-        return writers[path].ready(rasters[path].rows(first, last), workers)
+        rows = rasters[path].rows(first, last)
+        if loss is not None:
+            loss.add(rows)
+        return writers[path].ready(rows, workers)
 
     computed = workers.ahead(compute, bands)
     for i, ((path, first, last), rows) in enumerate(zip(bands, computed, strict=True)):

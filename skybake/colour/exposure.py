@@ -59,12 +59,15 @@ def luminance_from_units(units: str) -> float:
     return 1.0 if units == "nits" else luminance_from_ev(15.0)
 
 
-_SKY = 0.36
-_SUN_FREE = 0.99
-_MOSTLY = 0.95
-_HIGHLIGHT_SHARE = 0.6
-_DARK = 0.01
-_PLANET = 0.8
+SKY_ON_SCREEN = 0.36
+"""Scene-linear value of a sky's mean: a stop above middle grey, as photographs have it."""
+
+PLANET_ON_SCREEN = 0.7
+"""Most that the mean of what is below the horizontal may come to, be it snow or a planet
+below black space."""
+
+_BEYOND = 8.0
+_STARS = 0.01
 _NO_LIGHT = 1e-30
 _DARKEST_EV = -20.0
 
@@ -74,16 +77,17 @@ def auto_ev(
     solid_angle: npt.ArrayLike = 1.0,
     above: npt.ArrayLike = True,
 ) -> float:
-    """Exposure value at which a sky map is legible, by day, at night and in space.
+    """Exposure value for a picture of a sky, as a camera meters it.
 
     Parameters
     ----------
     luminance : ndarray of float
         Finite. [cd m⁻²]
     solid_angle : array_like of float, optional
-        What each value counts, in any unit; broadcast to `luminance`.
+        What each value counts, in any unit; broadcast to `luminance`. 0 leaves it out, as
+        the sun's disc should be.
     above : array_like of bool, optional
-        Which values are above the horizontal; broadcast to `luminance`. If none is, all count.
+        Which values are above the horizontal; broadcast to `luminance`.
 
     Returns
     -------
@@ -92,46 +96,33 @@ def auto_ev(
 
     Notes
     -----
-    An exposure for the whole brings the mean of log luminance over solid angle to 0.36,
-    a stop above middle grey, as a sky is shown. An exposure for the highlights brings
-    them to 1, where the display transforms still keep hue. If the highlights ask for
-    less light, the exposure goes three fifths of the way to theirs, in stops: the
-    glow around the sun keeps its colour, and the rest of the sky its shape.
+    The higher of two exposures. One brings the sky's mean of log luminance over solid angle to
+    `SKY_ON_SCREEN`, and lets the light around the sun go white. The other brings the same mean
+    of all that is below, there weighted with luminance besides, to `PLANET_ON_SCREEN`: from
+    space that is the lit part of the planet and its limb, however little of the view they are
+    and however dark the night side is. Both are smooth in whatever moves, since no
+    pixel enters or leaves a mean by a threshold.
 
-    Highlights are the 99th percentile of the hemisphere above, which the sun's disc does
-    not reach but its aureole does, or the 95th of the whole map, which the ground
-    reaches that is seen from high up. The mean is taken over the upper hemisphere too, unless
-    that is black beside the rest as it is in space, and over what is brighter than a
-    hundredth of that 99th percentile: black space and the night side do not count.
+    What is more than eight stops above the sky's mean counts as eight stops: a disc that
+    nobody has told of. Where less than a hundredth of the sky is lit, it is no sky but a sun
+    in black space.
     """
-    sample = np.asarray(luminance, np.float64)
-    weights = np.broadcast_to(np.asarray(solid_angle, np.float64), sample.shape).ravel()
-    upper = np.broadcast_to(np.asarray(above, np.bool_), sample.shape).ravel()
-    if not upper.any():
-        upper = np.ones_like(upper)
-    sample = sample.ravel()
-
-    mostly = _weighted_quantile(sample, weights, _MOSTLY)
-    bright = _weighted_quantile(sample, weights, _SUN_FREE)
-    bright_above = _weighted_quantile(sample[upper], weights[upper], _SUN_FREE)
-    if bright == 0.0 and sample.any():
-        # Seen from far away, the planet is less than a hundredth of the sky.
-        bright = _weighted_quantile(sample[sample > 0.0], weights[sample > 0.0], _PLANET)
-    elif bright_above >= _DARK * bright:
-        sample, weights, bright = sample[upper], weights[upper], bright_above
-    lit = sample >= max(_DARK * bright, _NO_LIGHT)
-    if not lit.any():
+    sample = np.maximum(np.asarray(luminance, np.float64), 0.0)
+    weights = np.broadcast_to(np.asarray(solid_angle, np.float64), sample.shape)
+    is_above = np.broadcast_to(np.asarray(above, np.bool_), sample.shape)
+    lit = (sample > _NO_LIGHT) & (weights > 0.0)
+    exposures = []
+    sky, planet = lit & is_above, lit & ~is_above
+    is_sky = weights[sky].sum() > _STARS * weights[is_above].sum()
+    if sky.any() and (is_sky or not planet.any()):
+        stops, share = np.log2(sample[sky]), weights[sky]
+        mean = np.average(stops, weights=share)
+        mean = np.average(np.minimum(stops, mean + _BEYOND), weights=share)
+        exposures.append(mean - math.log2(SKY_ON_SCREEN))
+    if planet.any():
+        light = sample[planet]
+        mean = np.average(np.log2(light), weights=weights[planet] * light)
+        exposures.append(mean - math.log2(PLANET_ON_SCREEN))
+    if not exposures:
         return 0.0
-    for_whole = float(np.average(np.log2(sample[lit]), weights=weights[lit])) - math.log2(_SKY)
-    for_highlights = math.log2(max(mostly, bright, _NO_LIGHT))
-    for_both = for_whole + _HIGHLIGHT_SHARE * max(0.0, for_highlights - for_whole)
-    return max(for_both - math.log2(luminance_from_ev(0.0)), _DARKEST_EV)
-
-
-def _weighted_quantile(
-    values: npt.NDArray[np.float64], weights: npt.NDArray[np.float64], share: float
-) -> float:
-    """Smallest value with at least this share of the weight at or below it."""
-    order = np.argsort(values)
-    below = np.cumsum(weights[order])
-    return float(values[order[np.searchsorted(below, share * below[-1])]])
+    return max(float(max(exposures)) - math.log2(luminance_from_ev(0.0)), _DARKEST_EV)

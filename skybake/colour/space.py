@@ -14,9 +14,10 @@ Array = npt.NDArray[np.float64]
 D65 = (0.3127, 0.3290)
 ACES_WHITE = (0.32168, 0.33767)
 
-_BRADFORD = np.array(
+BRADFORD = np.array(
     [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]]
 )
+"""From XYZ to the responses of receptors, whose gains an adaptation changes (Lam 1985)."""
 
 
 @dataclass(frozen=True)
@@ -144,12 +145,33 @@ def rgb_from_xyz(space: ColourSpace) -> Array:
     """
     if space.name == "xyz":
         return np.eye(3)
-    *primaries, white = (_xyz_from_xy(*space.chromaticities[i : i + 2]) for i in (0, 2, 4, 6))
+    *primaries, white = (xyz_from_xy(*space.chromaticities[i : i + 2]) for i in (0, 2, 4, 6))
     directions = np.stack(primaries, axis=1)
     xyz_from_rgb = directions * np.linalg.solve(directions, white)
-    cone_gain = (_BRADFORD @ white) / (_BRADFORD @ _xyz_from_xy(*D65))
-    adaptation = np.linalg.solve(_BRADFORD, cone_gain[:, None] * _BRADFORD)
-    matrix: Array = np.linalg.solve(xyz_from_rgb, adaptation)
+    adaptation = bradford(xyz_from_xy(*D65), white)
+    matrix: Array = np.asarray(np.linalg.solve(xyz_from_rgb, adaptation), np.float64)
+    return matrix
+
+
+def bradford(white: Array, adapted_white: Array) -> Array:
+    """Matrix by which XYZ of one white looks in another as it did.
+
+    Parameters
+    ----------
+    white, adapted_white : ndarray of float64, shape (3,)
+        XYZ of both. Their luminances should be equal, since the matrix takes one to the other.
+
+    Returns
+    -------
+    ndarray of float64, shape (3, 3)
+        ``adapted = matrix @ xyz``.
+
+    References
+    ----------
+    K. Lam, "Metamerism and Colour Constancy", 1985.
+    """
+    cone_gain = (BRADFORD @ adapted_white) / (BRADFORD @ white)
+    matrix: Array = np.linalg.solve(BRADFORD, cone_gain[:, None] * BRADFORD)
     return matrix
 
 
@@ -159,6 +181,6 @@ def luminance_weights(space: ColourSpace) -> Array:
     return weights
 
 
-def _xyz_from_xy(x: float, y: float) -> Array:
+def xyz_from_xy(x: float, y: float) -> Array:
     """Tristimulus values of chromaticity xy at luminance 1."""
     return np.array([x / y, 1.0, (1.0 - x - y) / y])

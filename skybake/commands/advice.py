@@ -8,5 +8,5 @@ from skybake.errors import SkybakeError, UnsolvableError
 def advised(error: SkybakeError) -> str:
     """Return an error's message, and which options help if there are any."""
     if isinstance(error, UnsolvableError):
-        return f"{error}; use probe --method reference, or --method hillaire"
+        return f"{error}; use probe --method reference"
     return str(error)

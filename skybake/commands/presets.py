@@ -115,8 +115,9 @@ def new(name: str, base: str) -> None:
     from skybake.formats.whole_files import replace_when_whole
     from skybake.preset import preset_template
 
-    text = preset_template(name.removesuffix(".toml"), base)
-    path = Path(f"{name.removesuffix('.toml')}.toml")
+    name = name[: -len(".toml")] if name.lower().endswith(".toml") else name
+    text = preset_template(name, base)
+    path = Path(f"{name}.toml")
     check_target(path)
     if path.exists():
         raise OutputError(f"{path}: exists already")
@@ -139,7 +140,7 @@ def new(name: str, base: str) -> None:
 def plot(name: str, output: Path | None, **_: Any) -> None:
     """Draw the coefficients, profiles and phase functions of a preset.
 
-    Needs matplotlib: pip install 'skybake[plot]'.
+    Needs matplotlib: pip install matplotlib.
 
     \b
     Examples:
@@ -152,7 +153,7 @@ def plot(name: str, output: Path | None, **_: Any) -> None:
         from skybake.baking.paths import world_name
         from skybake.inspect.plot import plot_planet
     except ImportError as error:
-        raise InputError("plot: needs matplotlib; try pip install 'skybake[plot]'") from error
+        raise InputError("plot: needs matplotlib; try pip install matplotlib") from error
     output = output or Path(f"{world_name(planet)}.png")
     plot_planet(planet, output)
     click.echo(output)

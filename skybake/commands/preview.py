@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
 from skybake.commands.memory import check_memory
-from skybake.commands.options.values import VIEWS, exposure, with_suffix
+from skybake.commands.options.previews import look_options, picture_from_options
+from skybake.commands.options.values import exposure, with_suffix
+from skybake.commands.printing.pictures import picture_line
 from skybake.errors import InputError
 
 
@@ -27,26 +30,23 @@ from skybake.errors import InputError
     type=exposure,
     default="auto",
     show_default=True,
-    help="Exposure value at ISO 100; auto finds one at which the sky is legible.",
+    help="Exposure value at ISO 100; auto meters the sky as a camera does.",
 )
-@click.option(
-    "--view",
-    type=click.Choice(VIEWS),
-    default=VIEWS[0],
-    show_default=True,
-    help="Display transform: ACES 2.0, or that of ACES 1.3.",
-)
+@look_options
 @click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
-def preview(source: Path, output: Path | None, ev: float | None, view: str, quiet: bool) -> None:
+def preview(
+    source: Path, output: Path | None, ev: float | None, quiet: bool, **options: Any
+) -> None:
     """Show the EXR or Radiance map IN as an sRGB picture, through ACES.
 
-    Colour space and scale are read from the file. Without tags it is taken as linear Rec. 709,
-    exposed for EV 15.
+    Colour space, scale and projection are read from the file. Without tags it is taken as linear
+    Rec. 709, exposed for EV 15, in the projection of its shape.
 
     \b
     Examples:
       skybake preview sky.exr
-      skybake preview sky.exr -o dark.png --ev 12 --view aces1
+      skybake preview sky.exr -o dark.png --ev 12 --view aces2
+      skybake preview sky.exr -o west.png --shot 270,10,60deg --white-balance 5500K
     """
     check_memory()
 
@@ -55,6 +55,6 @@ def preview(source: Path, output: Path | None, ev: float | None, view: str, quie
     if not source.name:
         raise InputError(f"{source}: must be an image file, got a folder")
     output = output or source.with_suffix(".png")
-    ev = preview_file(source, output, ev=ev, view=view)
+    shown = preview_file(source, output, picture_from_options(options, ev))
     if not quiet:
-        click.echo(f"{output}  exposed for EV {ev:.2f}")
+        click.echo(picture_line(output, shown.ev, shown.white))

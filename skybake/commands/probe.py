@@ -12,8 +12,16 @@ import click
 from skybake import input_files
 from skybake.commands.memory import check_memory
 from skybake.commands.options import values
-from skybake.commands.options.observer import altitude_option, sun_option
+from skybake.commands.options.observer import (
+    altitude_option,
+    sun_distance_needs,
+    sun_distance_option,
+    sun_option,
+)
+from skybake.commands.options.rules import check_needs
+from skybake.commands.options.times import moment_from_options, moment_needs, moment_options
 from skybake.commands.options.world import world_from_options, world_options
+from skybake.commands.printing.notices import warn
 
 _MOST_WAVELENGTHS = 128
 
@@ -33,6 +41,8 @@ def _wavelengths(text: str) -> tuple[float, ...]:
 @click.command()
 @world_options
 @sun_option()
+@moment_options
+@sun_distance_option()
 @altitude_option()
 @click.option(
     "--directions",
@@ -90,16 +100,29 @@ def probe(**options: Any) -> None:
       skybake probe --sun 10deg --method reference --samples 2000
     """
     check_memory()
+    context = click.get_current_context()
+    is_timed = options["time"] is not None
+    check_needs(
+        context,
+        moment_needs(context),
+        sun_distance_needs(options, is_timed=is_timed, time="--time"),
+    )
+    moment = moment_from_options(context)
 
     import numpy as np
 
     from skybake.formats.whole_files import replace_when_whole
+    from skybake.image.sun_distance import sun_distance
     from skybake.inspect.probe import default_directions, probe, read_directions
+    from skybake.optics.medium import build_medium
+    from skybake.sky.closure import closure_warning
+    from skybake.sky.sky import WAVELENGTHS
 
-    planet = world_from_options(click.get_current_context())
+    planet = world_from_options(context)
+    sun_elevation = options["sun_elevation"] if moment is None else moment.sun_elevation
     source: Path | None = options["directions"]
     if source is None:
-        directions = default_directions(options["sun_elevation"])
+        directions = default_directions(sun_elevation)
     elif str(source) == "-":
         where = "standard input"
         text = input_files.read_stream(sys.stdin, where, input_files.LARGEST_DIRECTIONS)
@@ -108,10 +131,17 @@ def probe(**options: Any) -> None:
         text = input_files.read_text(source, str(source), input_files.LARGEST_DIRECTIONS)
         directions = read_directions(str(source), io.StringIO(text, newline=""))
     wavelengths = options["wavelengths"]
+    if options["method"] == "hillaire":
+        warning = closure_warning(
+            build_medium(planet, np.array(planet.wavelengths or WAVELENGTHS, dtype=float))
+        )
+        if warning is not None:
+            warn(warning)
     text = probe(
         planet,
         directions,
-        sun_elevation=options["sun_elevation"],
+        sun_elevation=sun_elevation,
+        sun_distance=sun_distance(planet, moment, options["sun_distance"]),
         altitude=options["altitude"],
         wavelengths=None if wavelengths is None else np.array(wavelengths),
         per_irradiance=options["per_irradiance"],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,13 +12,24 @@ import click
 from skybake.commands.memory import check_memory
 from skybake.commands.options import values
 from skybake.commands.options.maps import map_needs, map_options, map_settings
-from skybake.commands.options.observer import altitude_option, sun_azimuth_option, sun_option
-from skybake.commands.options.previews import BESIDE, preview_needs, preview_options
+from skybake.commands.options.observer import (
+    altitude_option,
+    sun_azimuth_option,
+    sun_distance_needs,
+    sun_distance_option,
+    sun_option,
+)
+from skybake.commands.options.previews import (
+    BESIDE,
+    picture_from_options,
+    preview_needs,
+    preview_options,
+)
 from skybake.commands.options.rules import check_needs
 from skybake.commands.options.times import moment_from_options, moment_needs, moment_options
 from skybake.commands.options.world import world_from_options, world_options
 from skybake.commands.printing import render_summary
-from skybake.commands.printing.notices import announce, notice
+from skybake.commands.printing.notices import announce, notice, warn
 from skybake.commands.printing.progress import map_progress
 
 
@@ -26,6 +38,7 @@ from skybake.commands.printing.progress import map_progress
 @sun_option()
 @sun_azimuth_option()
 @moment_options
+@sun_distance_option()
 @altitude_option()
 @map_options
 @click.option(
@@ -42,7 +55,7 @@ from skybake.commands.printing.progress import map_progress
 def render(**options: Any) -> None:
     """Bake a sky map.
 
-    Angles are 5deg, 0.1rad, 30arcmin or bare degrees; lengths 2km, 1500m, 30000ft or bare metres.
+    Angles are 5deg, 0.1rad, 30arcmin or bare degrees; lengths 2km, 1500m or 30000ft.
     +Y is up and -Z north; azimuths are compass bearings, 0 = north, clockwise. The middle of an
     equirect map faces south, where the sun is by default; its left half is the east.
 
@@ -57,7 +70,14 @@ def render(**options: Any) -> None:
     check_memory()
     started = time.perf_counter()
     context = click.get_current_context()
-    check_needs(context, moment_needs(context), map_needs(options), preview_needs(options))
+    is_timed = options["time"] is not None
+    check_needs(
+        context,
+        moment_needs(context),
+        sun_distance_needs(options, is_timed=is_timed, time="--time"),
+        map_needs(options),
+        preview_needs(options),
+    )
     moment = moment_from_options(context)
     settings = map_settings(
         options,
@@ -68,8 +88,11 @@ def render(**options: Any) -> None:
 
     from skybake.baking import bake, default_path, late_kernels
     from skybake.baking.paths import preview_beside
+    from skybake.image.sun_distance import sun_distance
 
     planet = world_from_options(context)
+    distance = sun_distance(planet, moment, options["sun_distance"])
+    settings = replace(settings, lighting=replace(settings.lighting, sun_distance=distance))
     output = options["output"] or default_path(planet, settings)
     preview = preview_beside(output) if options["preview"] == BESIDE else options["preview"]
     quiet = options["quiet"]
@@ -81,14 +104,15 @@ def render(**options: Any) -> None:
             output,
             settings,
             preview=preview,
-            preview_ev=options["preview_ev"],
-            preview_view=options["view"] or values.VIEWS[0],
+            picture=picture_from_options(options, options["preview_ev"]) if preview else None,
             attributes=None if moment is None else moment.attributes,
             progress=progress,
             notice=None if quiet else notice,
         )
+    for warning in baked.warnings:
+        warn(warning)
     seconds = time.perf_counter() - started
     if options["as_json"]:
-        render_summary.print_json(baked, planet.name, settings, seconds, moment)
+        render_summary.print_json(baked, planet, settings, seconds, moment)
     elif not quiet:
         render_summary.print_summary(baked, seconds)

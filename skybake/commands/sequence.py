@@ -20,8 +20,19 @@ from skybake.commands.options.emit import (
     is_asked,
 )
 from skybake.commands.options.maps import map_needs, map_options, map_settings
-from skybake.commands.options.observer import altitude_option, sun_azimuth_option, sun_option
-from skybake.commands.options.previews import BESIDE, preview_needs, sequence_preview_options
+from skybake.commands.options.observer import (
+    altitude_option,
+    sun_azimuth_option,
+    sun_distance_needs,
+    sun_distance_option,
+    sun_option,
+)
+from skybake.commands.options.previews import (
+    BESIDE,
+    picture_from_options,
+    preview_needs,
+    sequence_preview_options,
+)
 from skybake.commands.options.products import product_options, products_from_options
 from skybake.commands.options.rules import Needs, check_needs, usage_faults
 from skybake.commands.options.times import span_from_options, span_needs, span_options
@@ -44,6 +55,7 @@ SOME_FAILED = 3
 @sun_option(is_range=True)
 @sun_azimuth_option(is_range=True)
 @span_options
+@sun_distance_option()
 @altitude_option(is_range=True)
 @click.option(
     "--frames",
@@ -99,7 +111,7 @@ SOME_FAILED = 3
     "--dask",
     metavar="ADDRESS",
     help="Bake on the workers of a Dask scheduler, such as tcp://host:8786; "
-    "needs pip install 'skybake[dask]'.",
+    "needs pip install distributed.",
 )
 @emit_options
 @click.option("--dry-run", is_flag=True, help="Print the frames and bake nothing.")
@@ -136,6 +148,7 @@ def sequence(**options: Any) -> None:
     check_needs(
         context,
         span_needs(context),
+        sun_distance_needs(options, is_timed=options["start"] is not None, time="--from and --to"),
         map_needs(options),
         preview_needs(options),
         emit_needs(options),
@@ -155,6 +168,7 @@ def sequence(**options: Any) -> None:
         return
     products = products_from_options(context, plan)
     result = _bake(plan, part, products, options)
+    sequence_summary.print_warnings(result)
     if result.failures:
         sequence_summary.print_failures(result, openjd=options["style"] == "openjd")
     written = _write_products(products, result)
@@ -210,6 +224,7 @@ def _plan_from_options(context: click.Context) -> Plan:
             sun_elevation=options["sun_elevation"] if times is None else None,
             sun_azimuth=options["sun_azimuth"] if times is None else None,
             altitude=options["altitude"],
+            sun_distance=options["sun_distance"],
             changes=replace(changes, values=ranges),
             settings=settings,
             exposure_curve=options["exposure_curve"],
@@ -223,8 +238,8 @@ def _bake(plan: Plan, part: Plan, products: Products, options: Mapping[str, Any]
     from skybake.sequence.bake import check_sequence, frame_pool
     from skybake.sequence.run import bake_frames
 
-    view, quiet = options["view"] or values.VIEWS[0], options["quiet"]
-    check_sequence(part, products, view)
+    quiet = options["quiet"]
+    check_sequence(part, products)
     if not quiet:
         announce_kernels()
     with (
@@ -233,8 +248,7 @@ def _bake(plan: Plan, part: Plan, products: Products, options: Mapping[str, Any]
             plan,
             part,
             products=products,
-            view=view,
-            preview_ev=options["preview_ev"] or "auto",
+            picture=picture_from_options(options, options["preview_ev"]),
             skip_existing=options["skip_existing"],
             workers=options["workers"],
             dask=options["dask"],

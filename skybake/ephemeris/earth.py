@@ -46,6 +46,12 @@ def sun_position(time: datetime, place: Place) -> tuple[float, float]:
     return float(sun.alt), float(sun.az)
 
 
+def sun_distance(time: datetime) -> float:
+    """Return how far the sun is from the centre of Earth, by libastro's VSOP87. [au]"""
+    sun = ephem.Sun(_days(time))
+    return float(sun.earth_distance)
+
+
 def hour_angle(time: datetime, place: Place) -> float:
     """Return how far the sun has moved past the upper meridian, -pi to pi. [rad]"""
     sun, observer = _observe(time, place)
@@ -87,5 +93,9 @@ def _observe(time: datetime, place: Place) -> tuple[ephem.Sun, ephem.Observer]:
     observer = ephem.Observer()
     observer.pressure = 0.0
     observer.lat, observer.lon = place.latitude, place.longitude
-    observer.date = (time - _DUBLIN_EPOCH) / timedelta(days=1)
+    observer.date = _days(time)
     return ephem.Sun(observer), observer
+
+
+def _days(time: datetime) -> float:
+    return (time - _DUBLIN_EPOCH) / timedelta(days=1)

@@ -11,9 +11,13 @@ import math
 from datetime import UTC, datetime, timedelta
 from typing import NamedTuple
 
+from skybake.ephemeris.place import Place
 from skybake.errors import InputError
 
 FIRST_YEAR, LAST_YEAR = 1972, 2127
+
+SOL_DAYS = 1.0274912517
+"""Length of a mean solar day. [d]"""
 
 _J2000 = datetime(2000, 1, 1, 12, tzinfo=UTC)
 _DAY = timedelta(days=1)
@@ -35,6 +39,10 @@ _PERTURBATIONS = (
 )
 # Amplitudes [deg] of the sines of the mean anomaly and its multiples; the first grows.
 _CENTRE = (10.691, 0.623, 0.050, 0.005, 0.0005)
+
+_SEMIMAJOR_AXIS = 1.52367934  # au
+_ECCENTRICITY = 0.09340
+_PERIHELION = 251.000  # Ls at perihelion in 2000, deg
 
 # TT is 32.184 s ahead of atomic time, and that was 10 s ahead of UTC when it began to
 # leap. Leap seconds since then, at the beginning of these (IERS Bulletin C).
@@ -58,11 +66,14 @@ class MarsTime(NamedTuple):
         True less mean solar time. [rad]
     sol_date : float
         Mars Sol Date; its fraction is the mean solar time at longitude 0. [sol]
+    sun_distance : float
+        As of `distance_in_season`. [au]
     """
 
     solar_longitude: float
     equation_of_time: float
     sol_date: float
+    sun_distance: float
 
     def hour_angle(self, longitude: float) -> float:
         """Local true solar time as the angle since noon, at an east longitude. [rad]"""
@@ -101,14 +112,38 @@ def mars_time(time: datetime) -> MarsTime:
     season = (mean_sun + centre) % _TURN
     projection = 2.861 * math.sin(2 * season) - 0.071 * math.sin(4 * season)
     projection += 0.002 * math.sin(6 * season)
-    sol_date = (days - 4.5) / 1.0274912517 + 44_796.0 - 0.0009626
-    return MarsTime(season, math.radians(projection) - centre, sol_date)
+    sol_date = (days - 4.5) / SOL_DAYS + 44_796.0 - 0.0009626
+    # At perihelion the anomaly is 0 and the equation of centre too.
+    distance = distance_in_season(season, mean_sun - anomaly)
+    return MarsTime(season, math.radians(projection) - centre, sol_date, distance)
 
 
 def tt_less_utc(time: datetime) -> float:
     """Return how far terrestrial time is ahead of UTC, from 1972 on. [s]"""
     month = f"{time.astimezone(UTC):%Y-%m}"
     return _TT_LESS_UTC_IN_1972 + sum(leap <= month for leap in _LEAPS)
+
+
+def distance_in_season(
+    solar_longitude: float, perihelion: float = math.radians(_PERIHELION)
+) -> float:
+    """Return how far the sun is in a season, by the ellipse of Allison and McEwen (2000).
+
+    Parameters
+    ----------
+    solar_longitude : float
+        Ls. [rad]
+    perihelion : float, optional
+        Ls at perihelion, by default that of 2000. [rad]
+
+    Returns
+    -------
+    float
+        Within 0.0004, which is how far other planets move Mars from its ellipse. [au]
+    """
+    anomaly = solar_longitude - perihelion
+    axis = _SEMIMAJOR_AXIS * (1.0 - _ECCENTRICITY**2)
+    return axis / (1.0 + _ECCENTRICITY * math.cos(anomaly))
 
 
 def declination(solar_longitude: float) -> float:
@@ -171,3 +206,25 @@ def sun_in_season(
     """
     vertical = planetographic_latitude(latitude)
     return horizontal(vertical, declination(solar_longitude), hour_angle)
+
+
+def sun_position(time: datetime, place: Place) -> tuple[float, float]:
+    """Return the position of the sun's centre at a time and a place.
+
+    Returns
+    -------
+    elevation, azimuth : float
+        As of `sun_in_season`. [rad]
+
+    Raises
+    ------
+    InputError
+        As `mars_time`.
+    """
+    now = mars_time(time)
+    return sun_in_season(now.solar_longitude, now.hour_angle(place.longitude), place.latitude)
+
+
+def hour_angle(time: datetime, place: Place) -> float:
+    """Return how far the sun has moved past the upper meridian, -pi to pi. [rad]"""
+    return mars_time(time).hour_angle(place.longitude)

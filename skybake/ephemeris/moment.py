@@ -4,23 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import date, datetime, timedelta, tzinfo
 
 from skybake.ephemeris.clock import Clock, argument
-from skybake.ephemeris.earth import refraction, sun_position
-from skybake.ephemeris.mars import mars_time, sun_in_season
+from skybake.ephemeris.earth import sun_distance, sun_position
+from skybake.ephemeris.horizon import Horizon
+from skybake.ephemeris.local_clock import local_text, utc_text
+from skybake.ephemeris.mars import distance_in_season, mars_time, sun_in_season
 from skybake.ephemeris.place import Place
-from skybake.ephemeris.times import (
-    MAX_STEPS,
-    local_text,
-    parse_clock,
-    steps,
-    utc_text,
-)
+from skybake.ephemeris.season import DAY
+from skybake.ephemeris.times import MAX_STEPS, steps
 from skybake.errors import ArgumentError
-
-_DAY = 86_400.0
+from skybake.units import degrees
 
 Spread = Callable[[float, float], list[float]]
 """From the first and the last time to all that are wanted. [s]"""
@@ -42,6 +38,8 @@ class Moment:
         Of the sun's centre, geometric unless refraction was asked for. [rad]
     sun_azimuth : float
         Compass bearing: 0 = north, clockwise. [rad]
+    sun_distance : float
+        From the planet then. [au]
     attributes : mapping of str to str or float
         Time and place as files state them, see docs/formats.md.
     """
@@ -51,6 +49,7 @@ class Moment:
     place: Place
     sun_elevation: float
     sun_azimuth: float
+    sun_distance: float
     attributes: Mapping[str, str | float]
 
 
@@ -61,16 +60,17 @@ def sun_at(
     zone: str | None = None,
     day: date | None = None,
     solar_longitude: float | None = None,
-    refraction: bool = False,
+    refraction: bool | None = None,
+    altitude: float = 0.0,
 ) -> Moment:
     """Return the sun's position at a time and a place.
 
     Parameters
     ----------
     time : str or datetime
-        With an offset, as ``2026-06-21T04:00Z``; in `zone` also without one; on Earth
-        also an event of `day`, as ``sunset`` or ``noon-1h30min``; with
-        `solar_longitude` a local true solar time, as ``16:30``.
+        With an offset, as ``2026-06-21T04:00Z``; in `zone` also without one; an event of
+        `day`, as ``sunset`` or ``noon-1h30min``, or ``next-sunset`` if it may be a later
+        day; with `solar_longitude` an event, or a local true solar time, as ``16:30``.
     place : Place
         Where it is seen from.
     zone : str, optional
@@ -80,14 +80,17 @@ def sun_at(
     solar_longitude : float, optional
         The season on Mars, Ls, from 0 to 2 pi. [rad]
     refraction : bool, optional
-        Raise the sun by refraction in Earth's atmosphere.
+        Whether to raise the sun by refraction in Earth's atmosphere; by default if the
+        time is that of an event. Without it the sun rises and sets as it would without air.
+    altitude : float, optional
+        Of the observer above the ground, from where the sun is seen longer. [km]
 
     Raises
     ------
     ArgumentError
         If there is no such time, or an argument has no effect with the others.
     """
-    clock = Clock(place, zone, day, solar_longitude, refraction)
+    clock = Clock(place, zone, day, solar_longitude, refraction, (altitude, altitude))
     return _moments(clock, {"time": _text(time)}, lambda start, _: [start])[0]
 
 
@@ -106,7 +109,10 @@ class TimeSpan:
         Time between moments; with `solar_longitude` it is of local true solar time,
         86400 s a day. None spreads a number of moments evenly. [s]
     zone, day, solar_longitude, refraction
-        As of `sun_at`.
+        As of `sun_at`; with an event at either end, refraction is that of all moments.
+    altitude : float, tuple of 2 float, or None
+        Of the observer above the ground; of two, at the first moment and at the last, and
+        evenly between. None is the ground, or in a sequence its observer. [km]
     """
 
     start: str | datetime
@@ -116,7 +122,8 @@ class TimeSpan:
     zone: str | None = None
     day: date | None = None
     solar_longitude: float | None = None
-    refraction: bool = False
+    refraction: bool | None = None
+    altitude: float | tuple[float, float] | None = None
 
     def moments(self, count: int | None = None) -> list[Moment]:
         """Return all moments.
@@ -132,7 +139,15 @@ class TimeSpan:
             As `sun_at`; or if the end does not follow the start, or there are none or too
             many moments.
         """
-        clock = Clock(self.place, self.zone, self.day, self.solar_longitude, self.refraction)
+        ends = self.altitude or 0.0
+        clock = Clock(
+            self.place,
+            self.zone,
+            self.day,
+            self.solar_longitude,
+            self.refraction,
+            ends if isinstance(ends, tuple) else (ends, ends),
+        )
         texts = {"start": _text(self.start), "end": _text(self.end)}
         return _moments(clock, texts, lambda start, end: self._spread(start, end, count))
 
@@ -150,59 +165,62 @@ class TimeSpan:
 def _moments(clock: Clock, texts: Mapping[str, str], spread: Spread) -> list[Moment]:
     clock.check(texts)
     if clock.solar_longitude is not None:
-        return _in_season(clock, clock.solar_longitude, texts, spread)
+        season = clock.solar_longitude
+        times = spread(*clock.solar_bounds(season, texts))
+        return [_in_season(season, seconds, clock.place) for seconds in times]
     zone, start, end = clock.bounds(texts)
-    sun = _on_mars if clock.is_on_mars else _on_earth
     times = spread(0.0, (end - start).total_seconds())
+    horizons = _horizons(*clock.horizons(texts.values()), len(times))
     with argument(next(iter(texts))):
-        return [sun(start + timedelta(seconds=seconds), zone, clock) for seconds in times]
+        return [
+            _at(start + timedelta(seconds=seconds), zone, clock.place, horizon)
+            for seconds, horizon in zip(times, horizons, strict=True)
+        ]
 
 
-def _on_earth(time: datetime, zone: tzinfo | None, clock: Clock) -> Moment:
-    elevation, azimuth = sun_position(time, clock.place)
-    attributes = _attributes(time, clock.place)
-    if clock.refraction:
-        lift = refraction(elevation)
+def _horizons(first: Horizon, last: Horizon, count: int) -> list[Horizon]:
+    """Return the horizon of each moment; its altitude changes evenly."""
+    if first == last:
+        return [first] * count
+    climb = last.altitude - first.altitude
+    return [
+        replace(first, altitude=first.altitude + climb * i / max(count - 1, 1))
+        for i in range(count)
+    ]
+
+
+def _at(time: datetime, zone: tzinfo | None, place: Place, horizon: Horizon) -> Moment:
+    label = _label(time, zone)
+    attributes = _attributes(time, place)
+    if place.planet == "mars":
+        now = mars_time(time)
+        hour_angle = now.hour_angle(place.longitude)
+        sun = sun_in_season(now.solar_longitude, hour_angle, place.latitude)
+        attributes["skybake:solarLongitude"] = degrees(now.solar_longitude)
+        attributes["skybake:trueSolarTime"] = _clock_text((hour_angle / (2 * math.pi) + 0.5) * DAY)
+        return Moment(time, label, place, *sun, now.sun_distance, attributes)
+    elevation, azimuth = sun_position(time, place)
+    if horizon.refraction:
+        lift = horizon.lift(elevation)
         elevation += lift
-        attributes["skybake:refraction"] = math.degrees(lift)
-    return Moment(time, _label(time, zone), clock.place, elevation, azimuth, attributes)
+        attributes["skybake:refraction"] = degrees(lift)
+    return Moment(time, label, place, elevation, azimuth, sun_distance(time), attributes)
 
 
-def _on_mars(time: datetime, zone: tzinfo | None, clock: Clock) -> Moment:
-    now = mars_time(time)
-    hour_angle = now.hour_angle(clock.place.longitude)
-    sun = sun_in_season(now.solar_longitude, hour_angle, clock.place.latitude)
-    attributes = _attributes(time, clock.place)
-    attributes["skybake:solarLongitude"] = math.degrees(now.solar_longitude)
-    attributes["skybake:trueSolarTime"] = _clock_text((hour_angle / (2 * math.pi) + 0.5) * _DAY)
-    return Moment(time, _label(time, zone), clock.place, *sun, attributes)
-
-
-def _in_season(
-    clock: Clock, season: float, texts: Mapping[str, str], spread: Spread
-) -> list[Moment]:
-    times = []
-    for name, text in texts.items():
-        with argument(name):
-            times.append(parse_clock(text))
-    start, end = times[0], times[-1]
-    if len(times) > 1 and end <= start:
-        end += _DAY
-    moments = []
-    for seconds in spread(start, end):
-        sun = sun_in_season(season, 2 * math.pi * (seconds / _DAY - 0.5), clock.place.latitude)
-        attributes = _attributes(None, clock.place)
-        attributes["skybake:solarLongitude"] = math.degrees(season)
-        attributes["skybake:trueSolarTime"] = text = _clock_text(seconds)
-        label = f"Ls {math.degrees(season):g} {text}"
-        moments.append(Moment(None, label, clock.place, *sun, attributes))
-    return moments
+def _in_season(season: float, seconds: float, place: Place) -> Moment:
+    """Return the moment of a local true solar time on Mars. [s]"""
+    sun = sun_in_season(season, 2 * math.pi * (seconds / DAY - 0.5), place.latitude)
+    attributes = _attributes(None, place)
+    attributes["skybake:solarLongitude"] = degrees(season)
+    attributes["skybake:trueSolarTime"] = text = _clock_text(seconds)
+    label = f"Ls {degrees(season):g} {text}"
+    return Moment(None, label, place, *sun, distance_in_season(season), attributes)
 
 
 def _attributes(time: datetime | None, place: Place) -> dict[str, str | float]:
     where: dict[str, str | float] = {
-        "skybake:latitude": math.degrees(place.latitude),
-        "skybake:longitude": math.degrees(place.longitude),
+        "skybake:latitude": degrees(place.latitude),
+        "skybake:longitude": degrees(place.longitude),
     }
     return where if time is None else {"skybake:time": utc_text(time), **where}
 
@@ -217,5 +235,5 @@ def _label(time: datetime, zone: tzinfo | None) -> str:
 
 def _clock_text(seconds: float) -> str:
     """Write a time of day to a second."""
-    minutes, second = divmod(round(seconds % _DAY), 60)
+    minutes, second = divmod(round(seconds % DAY), 60)
     return f"{minutes // 60 % 24:02}:{minutes % 60:02}:{second:02}"

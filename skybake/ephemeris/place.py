@@ -10,6 +10,12 @@ from skybake.errors import ArgumentError
 PLANETS = ("earth", "mars")
 """Planets for which the sun's position is known."""
 
+MEAN_DISTANCES = {"earth": 1.0, "mars": 1.5237}
+"""Semi-major axes of their orbits, as the presets have them. [au]"""
+
+GROUND_RADII = {"earth": 6371.0, "mars": 3389.5}
+"""Mean radii, as the presets have them. [km]"""
+
 
 @dataclass(frozen=True)
 class Place:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from datetime import UTC, date, datetime, timedelta, tzinfo
 from difflib import get_close_matches
-from typing import Literal
-from zoneinfo import ZoneInfo, available_timezones
+from typing import Literal, NamedTuple
 
-from skybake.ephemeris.events import EVENTS, event_time, mean_solar_zone
+from skybake.ephemeris.events import EVENTS, Search, event_time, mean_solar_zone
+from skybake.ephemeris.horizon import Horizon
+from skybake.ephemeris.local_clock import check_day, day_exists, from_local, utc_text
 from skybake.ephemeris.place import Place
 from skybake.errors import InputError
 from skybake.units import parse_duration
@@ -19,7 +20,7 @@ MAX_STEPS = 100_000
 
 _OFFSET = r"(?:Z|[+-]\d\d:[0-5]\d(?::[0-5]\d)?)"
 _ISO = re.compile(rf"\d{{4}}-\d\d-\d\dT\d\d:\d\d(?::\d\d(?:\.\d{{1,6}})?)?({_OFFSET})?", re.ASCII)
-_EVENT = re.compile(rf"({'|'.join(EVENTS)})(?:([+-])(.+))?")
+_EVENT = re.compile(rf"(?:(next|previous)-)?({'|'.join(EVENTS)})(?:([+-])(.+))?")
 _SECONDS_OF_DAY = 86_400.0
 
 
@@ -33,23 +34,41 @@ def kind_of(text: str) -> Literal["event", "local", "absolute", "unknown"]:
     return "local" if iso[1] is None else "absolute"
 
 
-def find_zone(name: str) -> ZoneInfo:
-    """Return the clock of a region such as ``Europe/Paris``.
+class Event(NamedTuple):
+    """An event as it was typed.
+
+    Attributes
+    ----------
+    name : str
+        One of `EVENTS`.
+    search : {"next", "previous"} or None
+        As of `event_time`.
+    offset : float
+        From the event to the time that is meant. [s]
+    """
+
+    name: str
+    search: Search | None
+    offset: float
+
+
+def split_event(text: str) -> Event | None:
+    """Read an event such as ``next-sunset-1h``; None if the text is none.
 
     Raises
     ------
     InputError
-        If the time zone database has no such region; the message names the nearest.
+        If its offset is no duration, or longer than a day.
     """
-    try:
-        return ZoneInfo(name)
-    # KeyError for an unknown name, the others for an invalid one.
-    except (KeyError, ValueError, OSError) as error:
-        known = available_timezones()
-        if not known:
-            raise InputError("no time zone database is installed (pip install tzdata)") from error
-        like = ", ".join(get_close_matches(name, sorted(known), n=3)) or "Europe/Paris, UTC"
-        raise InputError(f"unknown time zone {name!r}; nearest: {like}") from error
+    match = _EVENT.fullmatch(text)
+    if match is None:
+        return None
+    before, name, sign, length = match.groups()
+    search: Search | None = None if before is None else "next" if before == "next" else "previous"
+    offset = parse_duration(length) if sign else 0.0
+    if offset > _SECONDS_OF_DAY:
+        raise InputError(f"{name}: offset must be at most 24h, got {length}")
+    return Event(name, search, -offset if sign == "-" else offset)
 
 
 def parse_time(
@@ -58,6 +77,7 @@ def parse_time(
     place: Place | None = None,
     zone: tzinfo | None = None,
     day: date | None = None,
+    horizon: Horizon | None = None,
 ) -> datetime:
     """Read a time such as ``2026-06-21T04:00Z`` or ``sunset+10min``.
 
@@ -65,13 +85,15 @@ def parse_time(
     ----------
     text : str
         ISO 8601 with an offset or, if there is a zone, without one; or one of
-        `EVENTS`, optionally with an offset.
+        `EVENTS`, optionally with ``next-`` or ``previous-`` before it and an offset after.
     place : Place, optional
         Of events.
     zone : tzinfo, optional
         The local clock; for events without one, that of the place's mean sun.
     day : date, optional
         Of events, by the local clock.
+    horizon : Horizon, optional
+        As of `skybake.ephemeris.events.event_time`.
 
     Returns
     -------
@@ -84,9 +106,9 @@ def parse_time(
         If the text is not such a time, if the local clock shows it never or twice, or if
         the event does not happen.
     """
-    event = _EVENT.fullmatch(text)
-    if event:
-        return _in_range(_parse_event(event, place, zone, day), text)
+    event = split_event(text)
+    if event is not None:
+        return _in_range(_time_of(event, place, zone, day, horizon), text)
     iso = _ISO.fullmatch(text)
     if iso is None:
         like = ", ".join(get_close_matches(text, EVENTS, n=3))
@@ -105,7 +127,7 @@ def parse_time(
                 f"needs an offset, as {text}Z or {text}+02:00, or a time zone, since clocks "
                 f"differ, got {text!r}"
             )
-        return _from_local(moment, zone)
+        return from_local(moment, zone)
     return moment.astimezone(UTC)
 
 
@@ -116,15 +138,19 @@ def parse_end(
     place: Place | None = None,
     zone: tzinfo | None = None,
     day: date | None = None,
+    horizon: Horizon | None = None,
 ) -> datetime:
     """Read the end of a range; an event that is not after the start is that of the next day.
 
     Parameters and errors are those of `parse_time`; an end that is not after the start is
     an InputError too.
     """
-    end = parse_time(text, place=place, zone=zone, day=day)
+    end = parse_time(text, place=place, zone=zone, day=day, horizon=horizon)
     if end <= start and kind_of(text) == "event" and day is not None:
-        end = parse_time(text, place=place, zone=zone, day=day + timedelta(days=1))
+        day += timedelta(days=1)
+        if zone is not None and not day_exists(day, zone):
+            day += timedelta(days=1)
+        end = parse_time(text, place=place, zone=zone, day=day, horizon=horizon)
     if end <= start:
         raise InputError(f"must be after the start, {utc_text(start)}, got {utc_text(end)}")
     return end
@@ -160,64 +186,25 @@ def steps(span: float, every: float) -> list[float]:
     return [i * every for i in range(int(span / every + 1e-9) + 1)]
 
 
-def utc_text(moment: datetime) -> str:
-    """Write a time as ISO 8601 in UTC, as ``2026-06-21T04:00:00Z``."""
-    return local_text(moment.astimezone(UTC)).replace("+00:00", "Z")
-
-
-def local_text(moment: datetime) -> str:
-    """Write a time as ISO 8601 by its own clock, with milliseconds if it has any."""
-    return moment.isoformat(timespec="milliseconds" if moment.microsecond else "seconds")
-
-
-def _parse_event(
-    event: re.Match[str], place: Place | None, zone: tzinfo | None, day: date | None
+def _time_of(
+    event: Event,
+    place: Place | None,
+    zone: tzinfo | None,
+    day: date | None,
+    horizon: Horizon | None,
 ) -> datetime:
-    name, sign, length = event.groups()
     if place is None or day is None:
-        raise InputError(f"{name} needs a place and a date, got none")
-    offset = parse_duration(length) if sign else 0.0
-    if offset > _SECONDS_OF_DAY:
-        raise InputError(f"{name}: offset must be at most 24h, got {length}")
+        raise InputError(f"{event.name} needs a place and a date, got none")
     if not FIRST_YEAR <= day.year <= LAST_YEAR:
         raise InputError(f"date must be in the years {FIRST_YEAR} to {LAST_YEAR}, got {day}")
-    moment = event_time(name, day, place, zone or mean_solar_zone(place))
-    return moment + timedelta(seconds=-offset if sign == "-" else offset)
+    if zone is None:
+        zone = mean_solar_zone(place)
+    check_day(day, zone)
+    moment = event_time(event.name, day, place, zone, horizon=horizon, search=event.search)
+    return moment + timedelta(seconds=event.offset)
 
 
 def _in_range(moment: datetime, text: str) -> datetime:
     if not FIRST_YEAR <= moment.year <= LAST_YEAR:
         raise InputError(f"must be in the years {FIRST_YEAR} to {LAST_YEAR}, got {text!r}")
     return moment
-
-
-def _from_local(moment: datetime, zone: tzinfo) -> datetime:
-    """Return the one time at which a local clock shows a naive time."""
-    # Of a time that is shown twice these are both; of one that is never shown they are
-    # what the clocks before and after the change would make of it.
-    first, second = (moment.replace(tzinfo=zone, fold=fold) for fold in (0, 1))
-    if first.utcoffset() == second.utcoffset():
-        return first.astimezone(UTC)
-    if first.astimezone(UTC).astimezone(zone).replace(tzinfo=None) == moment:
-        raise InputError(
-            f"is ambiguous in {zone}, write {local_text(first)} or {local_text(second)}, "
-            f"got {moment.isoformat()!r}"
-        )
-    before, after = first.utcoffset() or timedelta(), second.utcoffset() or timedelta()
-    change = _change(second.astimezone(UTC), first.astimezone(UTC), zone)
-    raise InputError(
-        f"does not exist in {zone}, where clocks change from {(change + before):%H:%M} to "
-        f"{(change + after):%H:%M}, got {moment.isoformat()!r}"
-    )
-
-
-def _change(low: datetime, high: datetime, zone: tzinfo) -> datetime:
-    """When between two times in UTC the clocks change."""
-    before = low.astimezone(zone).utcoffset()
-    while high - low > timedelta(seconds=1):
-        middle = low + (high - low) / 2
-        if middle.astimezone(zone).utcoffset() == before:
-            low = middle
-        else:
-            high = middle
-    return (high + timedelta(seconds=0.5)).replace(microsecond=0)

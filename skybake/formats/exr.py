@@ -12,6 +12,7 @@ from skybake.errors import OutputError
 from skybake.formats.compression import ZIP_LEVEL, largest_value, parse_compression
 from skybake.formats.exr_chunks import find_chunk_fault
 from skybake.formats.half import half_rows
+from skybake.formats.long_texts import pieces
 from skybake.formats.scanlines import Rows, ScanlineWriter
 from skybake.formats.spec import UNDATED, Attribute, MapSpec
 from skybake.formats.targets import write_error
@@ -105,5 +106,8 @@ def _set_attribute(header: OpenImageIO.ImageSpec, key: str, value: Attribute) ->
         header.attribute(key, kind, tuple(float(v) for v in value))
     elif isinstance(value, float):
         header.attribute(key, "float", value)
+    elif isinstance(value, str):
+        for name, piece in pieces(key, value):
+            header.attribute(name, piece)
     else:
         header.attribute(key, value)

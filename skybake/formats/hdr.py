@@ -18,6 +18,8 @@ RADIANCE_EFFICACY = 179.0
 """Luminous efficacy by which Radiance converts between its own radiance and luminance,
 equal energy white, for all light. [lm W⁻¹]"""
 
+WHITE_LUMINANCE = "whiteLuminance"
+
 _LARGEST = 2.0**126
 _EXPONENT_BITS = 0x7F800000
 _HALF_STEP_BITS = 0x8000
@@ -118,7 +120,8 @@ def header_lines(spec: MapSpec) -> bytes:
     -----
     EXPOSURE is the factor from radiance in W m⁻² sr⁻¹ to the value in the file, and
     Radiance's luminance is 179 times radiance, so 179 / white_luminance makes its
-    tools report our luminance. Readers for rendering leave the values as they are.
+    tools report our luminance. Readers for rendering leave the values as they are, but for some
+    that divide by it, as DirectXTex; without it a comment states the white luminance.
     Comments carry the other attributes. A long one continues under the same name in the
     next line, as readers have lines of 128 bytes and more.
     """
@@ -126,7 +129,9 @@ def header_lines(spec: MapSpec) -> bytes:
     attributes = dict(spec.attributes)
     lines = [
         f"SOFTWARE={_one_line(attributes.pop('Software', 'skybake'))}",
-        f"EXPOSURE={RADIANCE_EFFICACY / spec.white_luminance:.9g}",
+        f"EXPOSURE={RADIANCE_EFFICACY / spec.white_luminance:.9g}"
+        if spec.states_exposure
+        else f"# {WHITE_LUMINANCE}={spec.white_luminance:.9g}",
         f"PRIMARIES={primaries}",
         f"# colorInteropID={spec.colour_space.interop_id}",
     ]

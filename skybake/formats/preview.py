@@ -19,14 +19,17 @@ from skybake.formats.whole_files import WholeFiles, replace_when_whole
 
 # Named, because the defaults of OpenColorIO follow $OCIO and the version of the library.
 _VIEWS = {
+    "aces1": ("ocio://cg-config-v2.2.0_aces-v1.3_ocio-v2.4", "ACES 1.0 - SDR Video"),
     "aces2": (
         "ocio://cg-config-v4.0.0_aces-v2.0_ocio-v2.5",
         "ACES 2.0 - SDR 100 nits (Rec.709)",
     ),
-    "aces1": ("ocio://cg-config-v2.2.0_aces-v1.3_ocio-v2.4", "ACES 1.0 - SDR Video"),
 }
 VIEWS = tuple(_VIEWS)
 """Display transforms by name; the first is the default."""
+
+DEFAULT_VIEW = VIEWS[0]
+"""Chosen by looking at skies: ACES 2 makes the blue of noon a slate grey, see docs/formats.md."""
 
 Show = Callable[[npt.NDArray[np.float32], Tagged, float], None]
 
@@ -41,8 +44,9 @@ def write_preview(
     colour_space: Tagged,
     *,
     gain: float,
-    view: str = "aces2",
+    view: str = DEFAULT_VIEW,
     max_width: int = 1024,
+    texts: Mapping[str, str] | None = None,
 ) -> None:
     """Write a display-referred sRGB picture of a map.
 
@@ -57,10 +61,12 @@ def write_preview(
     gain : float
         Exposure: factor from pixels to the scene-linear values of ACES, where 0.18
         is middle grey.
-    view : {"aces2", "aces1"}
-        Display transform: ACES 2.0, or that of ACES 1.3.
+    view : {"aces1", "aces2"}
+        Display transform: that of ACES 1.3, or ACES 2.0.
     max_width : int
         Larger maps are reduced before the display transform. [pixel]
+    texts : mapping of str to str, optional
+        What the file is to hold besides the picture.
 
     Raises
     ------
@@ -69,7 +75,7 @@ def write_preview(
     OutputError
         If the file cannot be written.
     """
-    with open_preview(path, view=view, max_width=max_width) as show:
+    with open_preview(path, view=view, max_width=max_width, texts=texts) as show:
         show(pixels, colour_space, gain)
 
 
@@ -100,17 +106,18 @@ def write_picture(
 def open_preview(
     path: Path,
     *,
-    view: str = "aces2",
+    view: str = DEFAULT_VIEW,
     max_width: int = 1024,
     texts: Mapping[str, str] | None = None,
     files: WholeFiles | None = None,
 ) -> Iterator[Show]:
     """Yield ``show(pixels, colour_space, gain)``; the picture appears when the block ends.
 
-    Parameters and errors are those of `write_preview`, with texts that the file is
-    to hold besides the picture, and the files that it is to appear with.
+    Parameters and errors are those of `write_preview`, and the files that it is to
+    appear with.
     """
-    check_preview(path, view)
+    check_preview(path)
+    check_view(view)
     with ExitStack() as stack:
         whole_files = stack.enter_context(WholeFiles()) if files is None else files
         temporary = whole_files.add(path)
@@ -127,21 +134,25 @@ def open_preview(
         yield show
 
 
-def check_preview(path: Path, view: str) -> None:
+def check_preview(path: Path) -> None:
     """Raise the errors of a preview that can be found before anything is computed.
 
     Raises
     ------
     InputError
-        If the suffix or the view is not known.
+        If the suffix is not known.
     OutputError
         If a file cannot be written under that name.
     """
     if path.suffix.lower() != ".png":
         raise InputError(f"{path}: suffix of a preview must be .png, got {path.suffix!r}")
+    check_target(path)
+
+
+def check_view(view: str) -> None:
+    """Raise an `InputError` if there is no such display transform."""
     if view not in _VIEWS:
         raise InputError(f"view: must be one of {', '.join(VIEWS)}, got {view!r}")
-    check_target(path)
 
 
 def display_values(

@@ -13,7 +13,8 @@ import numpy.typing as npt
 import OpenImageIO
 
 from skybake.errors import InputError
-from skybake.formats.hdr import RADIANCE_EFFICACY, read_header
+from skybake.formats.hdr import RADIANCE_EFFICACY, WHITE_LUMINANCE, read_header
+from skybake.formats.long_texts import joined
 from skybake.formats.targets import is_utf8
 
 Pixels = npt.NDArray[np.float32]
@@ -35,7 +36,7 @@ class ImageFile:
     width, height : int
         Its size. [pixel]
     attributes : dict
-        By the file's own names; of a Radiance picture also `chromaticities` and
+        By the file's own names, long texts in one; of a Radiance picture also `chromaticities` and
         `whiteLuminance` where its header implies them.
 
     Raises
@@ -144,6 +145,7 @@ def _open(path: Path) -> OpenImageIO.ImageInput:
 
 def _attributes(path: Path, source: OpenImageIO.ImageInput) -> dict[str, Any]:
     attributes: dict[str, Any] = {a.name: a.value for a in source.spec().extra_attribs}
+    attributes = joined(attributes)
     if source.format_name() == "hdr":
         attributes |= _radiance_attributes(path)
     return attributes
@@ -154,6 +156,7 @@ def _radiance_attributes(path: Path) -> dict[str, Any]:
     try:
         header = read_header(path)
         exposure = float(header.get("EXPOSURE", "0"))
+        white = float(header.pop(WHITE_LUMINANCE, "0"))
         primaries = tuple(float(v) for v in header.get("PRIMARIES", "").split())
     except ValueError as error:
         raise InputError(f"{path}: EXPOSURE and PRIMARIES must be numbers, got {error}") from error
@@ -162,7 +165,9 @@ def _radiance_attributes(path: Path) -> dict[str, Any]:
     attributes: dict[str, Any] = dict(header)
     # Some programs write EXPOSURE=0 for an unknown exposure.
     if exposure > 0.0:
-        attributes["whiteLuminance"] = RADIANCE_EFFICACY / exposure
+        attributes[WHITE_LUMINANCE] = RADIANCE_EFFICACY / exposure
+    elif 0.0 < white < math.inf:
+        attributes[WHITE_LUMINANCE] = white
     if primaries:
         attributes["chromaticities"] = primaries
     return attributes

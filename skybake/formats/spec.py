@@ -56,6 +56,8 @@ class MapSpec:
         How directions map to pixels, as OpenEXR's `envmap` attribute has it.
     channels : tuple of str
         Names in the order of the arrays' last axis.
+    states_exposure : bool
+        Whether a Radiance header gives the scale as EXPOSURE too, by which some programs divide.
     attributes : mapping of str to Attribute
         Anything else, as ``{"skybake:sunDirection": (0.0, 0.5, 0.866)}``. `DateTime`
         and `Software` become the standard attributes of each format.
@@ -69,6 +71,7 @@ class MapSpec:
     compression: str = "zip"
     envmap: Literal["latlong", "cube"] | None = None
     channels: tuple[str, ...] = ("R", "G", "B")
+    states_exposure: bool = True
     attributes: Mapping[str, Attribute] = field(default_factory=dict)
 
     def __post_init__(self) -> None:

@@ -8,10 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from skybake.formats.preview import png_bytes
+from skybake.formats.preview import DEFAULT_VIEW, png_bytes
 from skybake.image.layers import Pixels
 from skybake.image.light import Light, attributes_from_light, light_of_scene
-from skybake.image.picture import PREVIEW_WIDTH, CodeValues, code_values, scene_ev
+from skybake.image.meter import scene_ev, scene_white
+from skybake.image.picture import PREVIEW_WIDTH, CodeValues, code_values
+from skybake.image.picture_settings import PictureSettings, WhiteBalance
 from skybake.image.raster import Raster
 from skybake.image.recipe import recipe_attributes
 from skybake.image.scene import Scene
@@ -58,23 +60,32 @@ class Image:
         """What the numbers mean."""
         return self.scene.settings.encoding
 
-    def picture(self, ev: float | None = None, view: str = "aces2") -> CodeValues:
+    def picture(
+        self,
+        ev: float | None = None,
+        view: str = DEFAULT_VIEW,
+        white_balance: WhiteBalance | None = None,
+    ) -> CodeValues:
         """Return the image as a screen shows it.
 
         Parameters
         ----------
         ev : float, optional
-            Exposure value at ISO 100; by default a legible one.
-        view : {"aces2", "aces1"}, optional
+            Exposure value at ISO 100; by default as a camera meters it.
+        view : {"aces1", "aces2"}, optional
             Display transform.
+        white_balance : float, "auto" or "none", optional
+            As of `PictureSettings`.
 
         Returns
         -------
         ndarray of uint8, shape (row, column, 3)
             Code values of sRGB; six faces form a cross.
         """
+        settings = PictureSettings(ev, view, white_balance)
         ev = scene_ev(self.scene) if ev is None else ev
-        return code_values(self._joined(), self.encoding, ev, view)
+        white = scene_white(self.scene, settings)
+        return code_values(self._joined(), self.encoding, ev, view, white)
 
     def _repr_png_(self) -> bytes:
         """Return what a notebook shows."""

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from skybake.angles import direction_from_angles
 from skybake.colour.space import find_colour_space, rgb_from_xyz
 from skybake.formats.spec import Attribute
 from skybake.image.scene import Scene
@@ -30,7 +31,8 @@ class Light:
     Attributes
     ----------
     sun_direction : tuple of float
-        Unit vector toward the sun; +Y up, -Z north, +X east.
+        Unit vector toward the sun in the map's axes: +Y up and, of a map that is not rotated,
+        -Z north, +X east.
     sun_colour : tuple of float
         Of the disc as the observer sees it: linear Rec. 709 of luminance 1, without
         negative components; white if no sunlight arrives.
@@ -50,7 +52,8 @@ class Light:
 def light_of_scene(scene: Scene) -> Light:
     """Return the light of a scene."""
     normal, horizontal = scene.sun_xyz()
-    x, y, z = scene.sky.sun_direction.tolist()
+    elevation = scene.settings.lighting.sun_elevation
+    x, y, z = direction_from_angles(scene.sun_bearing, elevation).tolist()
     return Light(
         sun_direction=(x, y, z),
         sun_colour=_colour(normal),

@@ -5,51 +5,76 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from skybake.colour.exposure import auto_ev, luminance_from_ev
-from skybake.formats.preview import Show, display_values
+from skybake.colour.exposure import luminance_from_ev
+from skybake.colour.space import ColourSpace
+from skybake.colour.white_balance import Array, balance
+from skybake.formats.preview import DEFAULT_VIEW, Show, display_values
 from skybake.image.layers import Pixels
+from skybake.image.meter import scene_ev, scene_white
+from skybake.image.picture_settings import PictureSettings
 from skybake.image.raster import Raster
-from skybake.image.scene import SURVEY_ROWS, Scene
+from skybake.image.scene import Scene
 from skybake.image.settings import Encoding
-from skybake.projection import Projection
-from skybake.projection.chart import Canvas
+from skybake.projection import Perspective, Projection
 
 PREVIEW_WIDTH = 1024
 
 CodeValues = npt.NDArray[np.uint8]
 
-
-def scene_ev(scene: Scene) -> float:
-    """Exposure value at which a scene is legible, whatever the size of the map.
-
-    A map of the whole sphere is exposed for all of it, a picture of a part for what it shows.
-    """
-    (canvas,) = scene.settings.view.projection.glance(2 * SURVEY_ROWS).canvases()
-    (part,) = canvas.parts
-    luminance = _rows(scene, canvas) @ scene.luminance
-    zenith, _ = part.chart.angles(0, canvas.height)
-    weights = part.chart.solid_angles(0, canvas.height)
-    return auto_ev(np.maximum(luminance, 0.0), weights, zenith <= np.pi / 2.0)
+_WHITE = 1e30
 
 
-def show_scene(scene: Scene, show: Show, ev: float) -> None:
-    """Make the preview of a scene, in the map's own projection."""
-    pixels = _single(scene, scene.settings.view.projection.smaller(PREVIEW_WIDTH))
-    show(pixels, scene.settings.encoding.space, gain(scene.settings.encoding, ev))
+def picture_projection(projection: Projection, shot: Perspective | None) -> Projection:
+    """Return what the preview of a map shows: a shot, or all of the map in a size that suits it."""
+    return projection.smaller(PREVIEW_WIDTH) if shot is None else shot
 
 
-def thumbnail(scene: Scene, ev: float, view: str, width: int) -> CodeValues:
+def picture_ev(scene: Scene, settings: PictureSettings) -> float:
+    """Exposure value of a picture of a scene: the given one, or what a camera meters."""
+    fixed = settings.fixed_ev
+    return scene_ev(scene, settings.shot) if fixed is None else fixed
+
+
+def show_scene(
+    scene: Scene, show: Show, ev: float, white: Array | None, projection: Projection
+) -> None:
+    """Make the preview of a scene."""
+    encoding = scene.settings.encoding
+    pixels = balanced(_single(scene, projection), encoding.space, white)
+    show(pixels, encoding.space, gain(encoding, ev))
+
+
+def thumbnail(scene: Scene, ev: float, settings: PictureSettings, width: int) -> CodeValues:
     """Picture of a scene in code values of sRGB; of the whole sphere an equirect map."""
-    glance = _single(scene, scene.settings.view.projection.glance(width))
-    return code_values(glance, scene.settings.encoding, ev, view)
+    shown = settings.shot or scene.settings.view.projection
+    glance = _single(scene, shown.glance(width))
+    white = scene_white(scene, settings)
+    return code_values(glance, scene.settings.encoding, ev, settings.view, white)
 
 
-def code_values(pixels: Pixels, encoding: Encoding, ev: float, view: str) -> CodeValues:
-    """Code values of sRGB of scene-linear pixels, shape (row, column, 3)."""
-    exposed = pixels * np.float32(gain(encoding, ev))
+def code_values(
+    pixels: Pixels,
+    encoding: Encoding,
+    ev: float,
+    view: str = DEFAULT_VIEW,
+    white: Array | None = None,
+) -> CodeValues:
+    """Code values of sRGB of scene-linear pixels, shape (row, column, 3).
+
+    Light whose XYZ is `white` has no colour in them; None is D65.
+    """
+    exposed = balanced(pixels, encoding.space, white) * np.float32(gain(encoding, ev))
     values = display_values(exposed, encoding.space, view)
     shown: CodeValues = np.rint(values * 255.0).astype(np.uint8)
     return shown
+
+
+def balanced(pixels: Pixels, space: ColourSpace, white: Array | None) -> Pixels:
+    """Pixels in which light whose XYZ is `white` looks as D65 does; None leaves them."""
+    if white is None:
+        return pixels
+    turned: Pixels = np.clip(pixels @ balance(space, white).T, -_WHITE, _WHITE).astype(np.float32)
+    return turned
 
 
 def gain(encoding: Encoding, ev: float) -> float:
@@ -60,8 +85,4 @@ def gain(encoding: Encoding, ev: float) -> float:
 def _single(scene: Scene, projection: Projection) -> Pixels:
     """Light of a scene in the one picture of a projection."""
     (canvas,) = projection.canvases()
-    return _rows(scene, canvas)
-
-
-def _rows(scene: Scene, canvas: Canvas) -> Pixels:
     return Raster(scene, canvas).rows(0, canvas.height)

@@ -82,15 +82,15 @@ class _Shown:
         if begin >= end:
             return
         low, high = begin - part.row, end - part.row
-        if part.flip == "rows":
+        if part.flip in {"rows", "both"}:
             low, high = chart.height - high, chart.height - low
         plane = self.plane(name, low, high)
         if plane is None:
             return
         place = out[begin - first : end - first, part.column : part.column + chart.width]
-        if part.flip == "rows":
+        if part.flip in {"rows", "both"}:
             place = place[::-1]
-        if part.flip == "columns":
+        if part.flip in {"columns", "both"}:
             place = place[:, ::-1]
         place[plane.first_row : plane.first_row + len(plane.pixels)] = plane.pixels
 
@@ -98,7 +98,7 @@ class _Shown:
 def sky_pixels(scene: Scene, chart: Chart, first: int, last: int) -> Pixels:
     """Light of the sky and the ground in a chart's rows, without the sun's disc, RGB."""
     zenith, bearing = chart.angles(first, last)
-    azimuth = bearing - scene.settings.lighting.sun_azimuth
+    azimuth = bearing - scene.sun_bearing
     footprint = chart.footprints(first, last)
     pixels = scene.evaluate(zenith, azimuth, footprint)
     limb = _limb(scene, zenith, footprint)

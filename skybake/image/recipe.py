@@ -15,7 +15,10 @@ HASH_ATTRIBUTE = "skybake:recipeHash"
 
 LONGEST_RECIPE = 4000
 """Length of a recipe's text in a file. OpenImageIO opens no Radiance picture with a hundred
-lines in its header, and FFmpeg 5.1 fails after a text of 8191 bytes. [character]"""
+lines in its header. [character]"""
+
+LONGEST_LIST = 16
+"""Numbers in a list that a recipe which is too long keeps."""
 
 
 def map_recipe(planet: Planet, settings: MapSettings) -> dict[str, Any]:
@@ -26,15 +29,27 @@ def map_recipe(planet: Planet, settings: MapSettings) -> dict[str, Any]:
 def recipe_text(planet: Planet, settings: MapSettings) -> str:
     """Return the recipe of a map as JSON that every reader of its files accepts.
 
-    A preset that makes it longer than `LONGEST_RECIPE`, as inline spectra do, is replaced
-    by its digest: SHA-256 of its JSON with sorted keys, which a manifest holds in full.
+    Of one that is longer than `LONGEST_RECIPE` the preset's long lists, as inline spectra, are
+    replaced by their digests, and if that does not suffice, the whole preset: SHA-256 of the
+    JSON with sorted keys, which a manifest holds in full.
     """
     recipe = map_recipe(planet, settings)
-    text = json.dumps(recipe)
-    if len(text) <= LONGEST_RECIPE:
-        return text
-    digest = hashlib.sha256(json.dumps(planet.recipe, sort_keys=True).encode()).hexdigest()
-    return json.dumps({"map": recipe["map"], "preset": {"sha256": digest}})
+    for preset in (planet.recipe, _without_long_lists(planet.recipe)):
+        text = json.dumps({"map": recipe["map"], "preset": preset})
+        if len(text) <= LONGEST_RECIPE:
+            return text
+    return json.dumps({"map": recipe["map"], "preset": _digest(planet.recipe)})
+
+
+def _without_long_lists(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _without_long_lists(each) for key, each in value.items()}
+    return _digest(value) if isinstance(value, list) and len(value) > LONGEST_LIST else value
+
+
+def _digest(value: Any) -> dict[str, str]:
+    text = json.dumps(value, sort_keys=True)
+    return {"sha256": hashlib.sha256(text.encode()).hexdigest()}
 
 
 def recipe_hash(planet: Planet, settings: MapSettings) -> str:
@@ -49,16 +64,4 @@ def recipe_attributes(planet: Planet, settings: MapSettings) -> dict[str, Attrib
         "skybake:preset": planet.name,
         "skybake:recipe": recipe_text(planet, settings),
         HASH_ATTRIBUTE: recipe_hash(planet, settings),
-    }
-
-
-def preview_texts(planet: Planet, settings: MapSettings, ev: float, view: str) -> dict[str, str]:
-    """Return the text chunks of a map's preview.
-
-    The exposure value is rounded to less than a visible difference.
-    """
-    return {
-        HASH_ATTRIBUTE: recipe_hash(planet, settings),
-        "skybake:exposureValue": f"{ev:.4f}",
-        "skybake:view": view,
     }

@@ -12,6 +12,7 @@ from skybake.colour.space import find_colour_space, luminance_weights, rgb_from_
 from skybake.errors import UnsolvableError
 from skybake.image.settings import MapSettings
 from skybake.image.stages import Stages
+from skybake.image.sun_size import drawn_radius
 from skybake.jit.arguments import flatten
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.medium import Array
@@ -20,6 +21,7 @@ from skybake.preset import Planet
 from skybake.projection.cells import Cells
 from skybake.projection.equirect import column_bearings, row_zeniths
 from skybake.sky.disc import Disc
+from skybake.sky.drawn_disc import DrawnDisc
 from skybake.sky.pixels import allocate_pixels, fill_directions
 from skybake.sky.sky import WAVELENGTHS, Sky
 from skybake.sky.spectral_table import radiance_at_nodes
@@ -51,7 +53,7 @@ _LAYERS = {"include": ("sky", "sun"), "exclude": ("sky",), "only": ("sun",)}
 
 def luminous_weights(sky: Sky) -> Array:
     """Weights from radiance per unit irradiance [sr⁻¹] to XYZ [cd m⁻²], (wavelength, 3)."""
-    star = star_spectrum(sky.planet.star)
+    star = star_spectrum(sky.star)
     if sky.planet.rendering == "spectral":
         return xyz_weights(sky.wavelengths, *star)
     # Three wavelengths stand for R, G and B, and the sun for white of its illuminance.
@@ -66,6 +68,12 @@ def _probe_zeniths() -> tuple[Array, Array]:
     """Zenith angles of the upper hemisphere and their weights, which take longer than a frame."""
     node, weight = np.polynomial.legendre.leggauss(PROBE_ZENITHS)
     return math.pi / 4.0 * (node + 1.0), math.pi / 4.0 * weight
+
+
+def _horizontal_weights() -> Array:
+    """Weights of these zenith angles in the illuminance of a horizontal plane."""
+    zenith, weight = _probe_zeniths()
+    return weight * np.sin(zenith) * np.cos(zenith)
 
 
 class Scene:
@@ -99,15 +107,33 @@ class Scene:
             settings.lighting.sun_elevation,
             settings.view.altitude,
             sun_azimuth=settings.lighting.sun_azimuth,
+            sun_distance=settings.lighting.sun_distance,
             method=settings.lighting.method,
             workers=workers,
         )
         self.sun_zenith = math.pi / 2.0 - settings.lighting.sun_elevation
+        # Of maps that are not rotated, the compass bearing.
+        self.sun_bearing = settings.lighting.sun_azimuth - settings.view.rotation
 
     @cached_property
     def sun(self) -> Disc:
-        """The sun's disc."""
-        return Disc(self.sky.skylight, self.sky.source)
+        """The sun's disc, as it is drawn.
+
+        Raises
+        ------
+        InputError
+            If it is to be soft and no such disc fits half floats.
+        """
+        lighting = self.settings.lighting
+        source = self.sky.source
+        if lighting.sun_size is None and not lighting.sun_soft:
+            return Disc(self.sky.skylight, source)
+        flux = lighting.sun_strength * float(self.rgb_weights.sum(axis=0).max())
+        # Before the atmosphere is solved for, which takes long.
+        radius = drawn_radius(lighting, source.angular_radius, flux)
+        return DrawnDisc(
+            self.sky.skylight, source, angular_radius=radius, is_soft=lighting.sun_soft
+        )
 
     @cached_property
     def xyz_weights(self) -> Array:
@@ -209,15 +235,18 @@ class Scene:
         for first in range(0, len(flux), CELLS_AT_ONCE):
             part = slice(first, first + CELLS_AT_ONCE)
             light = self.sun.radiance_per_irradiance(
-                cells.zenith[part], cells.distance[part], cells.azimuth[part]
+                cells.zenith[part],
+                cells.distance[part],
+                cells.azimuth[part] + self.settings.view.rotation,
             )
             flux[part] = (light @ self.rgb_weights) * cells.solid_angle[part, None]
-        return flux
+        return self.settings.lighting.sun_strength * flux
 
     def sun_xyz(self) -> tuple[Array, Array]:
         """XYZ by the sun's disc, on a plane that faces it and on the horizontal. [lx]"""
         normal, horizontal = self.sun.irradiance_per_irradiance()
-        return normal @ self.xyz_weights, horizontal @ self.xyz_weights
+        weights = self.settings.lighting.sun_strength * self.xyz_weights
+        return normal @ weights, horizontal @ weights
 
     def sun_illuminance(self) -> tuple[float, float]:
         """Illuminance by the sun's disc, facing it and on the horizontal. [lx]"""
@@ -226,12 +255,25 @@ class Scene:
 
     def sky_illuminance(self) -> float:
         """Illuminance of a horizontal plane by the sky without the sun's disc. [lx]"""
-        zenith, weight = _probe_zeniths()
+        luminance = self._sky_by_zenith @ self.luminance
+        return float(2.0 * math.pi * (_horizontal_weights() * luminance).sum())
+
+    def sky_xyz(self) -> Array:
+        """XYZ by the sky without the sun's disc, on the horizontal, shape (3,). [lx]"""
+        encoding = self.settings.encoding
+        flux = 2.0 * math.pi * _horizontal_weights() @ self._sky_by_zenith
+        xyz_from_rgb = np.linalg.inv(rgb_from_xyz(encoding.space))
+        xyz: Array = encoding.white_luminance * (xyz_from_rgb @ flux)
+        return xyz
+
+    @cached_property
+    def _sky_by_zenith(self) -> Array:
+        """Mean pixel values around the sky at the zenith angles of a probe, (zenith, 3)."""
+        zenith, _ = _probe_zeniths()
         azimuth = math.pi * (np.arange(PROBE_AZIMUTHS) + 0.5) / PROBE_AZIMUTHS
         pixels = self.evaluate(zenith[:, None], azimuth[None], 1e-9)
-        luminance = pixels.astype(float).mean(axis=1) @ self.luminance
-        flux = weight * np.sin(zenith) * np.cos(zenith)
-        return float(2.0 * math.pi * (flux * luminance).sum())
+        mean: Array = pixels.astype(float).mean(axis=1)
+        return mean
 
     def evaluate(self, zenith: Array, azimuth: Array, footprint: Array | float) -> np.ndarray:
         """Pixel values of the sky, see `fill_directions`, shape (row, column, 3).

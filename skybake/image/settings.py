@@ -12,8 +12,13 @@ from skybake.errors import InputError
 from skybake.formats.compression import parse_compression
 from skybake.projection import Equirect, Projection, find_projection
 from skybake.sky.sky import METHODS
+from skybake.units import degrees, metres
 
 SUN_DISCS = ("include", "exclude", "only")
+LARGEST_SUN = math.radians(20.0)
+"""Largest diameter of a sun's disc that is drawn in another size than its own. [rad]"""
+
+STRONGEST_SUN = 1e6
 PIXELS = ("auto", "half", "float")
 
 
@@ -27,10 +32,18 @@ class View:
         Of the observer above the ground. [km]
     projection : Projection
         Kind and size of the map.
+    rotation : float
+        Compass bearing that the map's -Z looks to instead of north. [rad]
     """
 
     altitude: float = 0.0
     projection: Projection = field(default_factory=Equirect)
+    rotation: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be baked."""
+        if not math.isfinite(self.rotation):
+            raise InputError(f"rotation: must be finite, got {self.rotation}")
 
 
 @dataclass(frozen=True)
@@ -43,21 +56,44 @@ class Lighting:
         Geometric elevation of the sun's centre at the observer. [rad]
     sun_azimuth : float
         Compass bearing of the sun: 0 = north, clockwise. [rad]
+    sun_distance : float or None
+        Of the sun; None leaves it where the preset has it. [au]
     sun_disc : {"include", "exclude", "only"}
         Whether the map holds the sun's disc, or nothing else.
+    sun_size : float or None
+        Angular diameter of the disc as it is drawn, with the light of the true one, at most
+        `LARGEST_SUN`; None for its own, or for what a soft one needs. [rad]
+    sun_soft : bool
+        Draw the disc without an edge, see `skybake.sky.drawn_disc.DrawnDisc`.
+    sun_strength : float
+        Factor of the disc's light, greater than 0; the sky keeps its own.
     method : {"full", "hillaire", "march"}
         How light is transported, see `skybake.sky.sky.Sky`.
     """
 
     sun_elevation: float = math.radians(30.0)
     sun_azimuth: float = math.pi
+    sun_distance: float | None = None
     sun_disc: str = "include"
+    sun_size: float | None = None
+    sun_soft: bool = False
+    sun_strength: float = 1.0
     method: str = "full"
 
     def __post_init__(self) -> None:
         """Refuse what cannot be baked."""
         _check_known("sun disc", self.sun_disc, SUN_DISCS)
         _check_known("method", self.method, METHODS)
+        if self.sun_size is not None and not 0.0 < self.sun_size <= LARGEST_SUN + 1e-9:
+            raise InputError(
+                f"sun size: must be greater than 0deg and at most "
+                f"{math.degrees(LARGEST_SUN):g}deg, got {math.degrees(self.sun_size):g}deg"
+            )
+        if not 0.0 < self.sun_strength <= STRONGEST_SUN:
+            raise InputError(
+                f"sun strength: must be greater than 0 and at most {STRONGEST_SUN:g}, "
+                f"got {self.sun_strength:g}"
+            )
 
 
 @dataclass(frozen=True)
@@ -78,6 +114,8 @@ class Encoding:
         EXR compression, see `skybake.formats.compression`.
     clamp_negative : bool
         Set negative values of colours outside the space to 0.
+    omit_exposure : bool
+        Leave EXPOSURE, by which some programs divide, out of a Radiance picture.
     """
 
     colorspace: str = "lin_rec709"
@@ -86,6 +124,7 @@ class Encoding:
     pixel: str = "auto"
     compression: str = "zip"
     clamp_negative: bool = False
+    omit_exposure: bool = False
 
     def __post_init__(self) -> None:
         """Refuse what cannot be stored."""
@@ -127,16 +166,22 @@ class MapSettings:
         """All that decides the pixels, in human-readable units, fit for JSON."""
         lighting, encoding = self.lighting, self.encoding
         return {
-            "sun_elevation_deg": math.degrees(lighting.sun_elevation),
-            "sun_azimuth_deg": math.degrees(lighting.sun_azimuth),
-            "altitude_m": self.view.altitude * 1e3,
+            "sun_elevation_deg": degrees(lighting.sun_elevation),
+            "sun_azimuth_deg": degrees(lighting.sun_azimuth),
+            **({} if lighting.sun_distance is None else {"sun_distance_au": lighting.sun_distance}),
+            "altitude_m": metres(self.view.altitude),
             **self.view.projection.recipe(),
+            "rotate_deg": degrees(self.view.rotation),
             "colorspace": encoding.colorspace,
             "white_luminance_cd_m2": encoding.white_luminance,
             "pixel": encoding.pixel,
             "compression": encoding.compression,
             "sun_disc": lighting.sun_disc,
+            "sun_size_deg": None if lighting.sun_size is None else degrees(lighting.sun_size),
+            "sun_soft": lighting.sun_soft,
+            "sun_strength": lighting.sun_strength,
             "clamp_negative": encoding.clamp_negative,
+            "omit_exposure": encoding.omit_exposure,
             "method": lighting.method,
         }
 

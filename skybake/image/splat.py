@@ -31,8 +31,7 @@ class Splat:
         self.peak = 0.0
         if "sun" not in scene.layer_names:
             return
-        lighting = scene.settings.lighting
-        cells = chart.disc_cells(scene.sun_zenith, lighting.sun_azimuth, scene.sun.angular_radius)
+        cells = chart.disc_cells(scene.sun_zenith, scene.sun_bearing, scene.sun.angular_radius)
         if cells.distance.size == 0:
             return
         used = cells.texel[cells.weight > 0.0] // width

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from skybake.errors import InputError
 from skybake.formats.whole_files import replace_when_whole
 from skybake.optics.medium import Medium, altitude_nodes, build_medium
 from skybake.optics.phase import scattering_angles
@@ -37,6 +38,8 @@ def plot_planet(planet: Planet, path: Path) -> None:
     SkybakeError
         If the planet cannot be rendered or the file not be written.
     """
+    if not planet.constituents:
+        raise InputError(f"{planet.name}: must have a constituent to draw, got none")
     own = np.array(planet.wavelengths or WAVELENGTHS, dtype=float)
     wavelengths = np.linspace(own.min(), own.max(), SAMPLES)
     medium = build_medium(planet, wavelengths)

@@ -93,6 +93,7 @@ def probe(
     *,
     sun_elevation: float,
     altitude: float = 0.0,
+    sun_distance: float | None = None,
     wavelengths: Array | None = None,
     per_irradiance: bool = False,
     illuminance: bool = False,
@@ -111,6 +112,8 @@ def probe(
         At the observer. [rad]
     altitude : float, optional
         Of the observer. [km]
+    sun_distance : float, optional
+        Of the sun; default the preset's. [au]
     wavelengths : ndarray, optional
         In any order; default the renderer's own. [nm]
     per_irradiance : bool, optional
@@ -136,7 +139,14 @@ def probe(
         If a value is out of range or the preset does not cover a wavelength.
     """
     fast = "full" if method == REFERENCE else method
-    sky = Sky(planet, sun_elevation, altitude, wavelengths=wavelengths, method=fast)
+    sky = Sky(
+        planet,
+        sun_elevation,
+        altitude,
+        sun_distance=sun_distance,
+        wavelengths=wavelengths,
+        method=fast,
+    )
     columns: dict[str, Array] = {}
     values, errors = _radiance(sky, directions, method, samples)
     scale = np.ones(sky.wavelengths.size) if per_irradiance else sky.irradiance
@@ -181,7 +191,13 @@ def _colour(
     """Luminance and chromaticity, from the renderer's own wavelengths."""
     own = np.array(planet.wavelengths or WAVELENGTHS)
     if not np.array_equal(sky.wavelengths, own):
-        sky = Sky(planet, sky.sun_elevation, sky.altitude, method=sky.method)
+        sky = Sky(
+            planet,
+            sky.sun_elevation,
+            sky.altitude,
+            sun_distance=sky.sun_distance,
+            method=sky.method,
+        )
         values, _ = _radiance(sky, directions, method, samples)
     xyz = values @ luminous_weights(sky)
     total = xyz.sum(axis=1)
@@ -194,7 +210,7 @@ def _colour(
 
 
 def _illuminance(planet: Planet, sky: Sky, directions: Directions) -> dict[str, Array]:
-    lighting = Lighting(sky.sun_elevation, method=sky.method)
+    lighting = Lighting(sky.sun_elevation, sun_distance=sky.sun_distance, method=sky.method)
     settings = MapSettings(View(sky.altitude), lighting)
     light = light_of_scene(Scene(planet, settings))
     figures = {

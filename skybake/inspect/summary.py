@@ -174,7 +174,9 @@ def summary_text(planet: Planet, summary: Summary) -> str:
         if one.column is not None
     ]
     if summary.visibility is not None:
-        lines.append(f"visibility: {summary.visibility:.4g} km at the ground, 550 nm")
+        is_clear = math.isinf(summary.visibility)
+        length = "without limit" if is_clear else f"{summary.visibility:.4g} km"
+        lines.append(f"visibility: {length} at the ground, 550 nm")
     if summary.turbidity is not None:
         lines.append(f"turbidity: {summary.turbidity:.4g} at 550 nm")
     albedo = ", ".join(

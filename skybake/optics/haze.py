@@ -164,6 +164,8 @@ def _sum_without(values: dict[str, float], names: Iterable[str]) -> float:
 
 def _at_ground(planet: Planet) -> dict[str, float]:
     """Extinction at the ground by each constituent. [km⁻¹]"""
+    if not planet.constituents:
+        return {}
     medium = build_medium(planet, np.array([HAZE_WAVELENGTH]))
     extinction = (medium.density[0] * medium.extinction[:, 0]).tolist()
     return {one.name: k for one, k in zip(planet.constituents, extinction, strict=True)}
@@ -171,6 +173,8 @@ def _at_ground(planet: Planet) -> dict[str, float]:
 
 def _vertical(planet: Planet, kind: type[Gas | Aerosol]) -> dict[str, float]:
     """Vertical optical depth of each constituent of a kind."""
+    if not planet.constituents:
+        return {}
     medium = build_medium(planet, np.array([HAZE_WAVELENGTH]))
     depths = vertical_optical_depth(medium)[:, 0].tolist()
     return {
@@ -181,4 +185,5 @@ def _vertical(planet: Planet, kind: type[Gas | Aerosol]) -> dict[str, float]:
 
 
 def _kinds(planet: Planet) -> str:
-    return ", ".join(f"{one.name} ({type(one).__name__.lower()})" for one in planet.constituents)
+    kinds = [f"{one.name} ({type(one).__name__.lower()})" for one in planet.constituents]
+    return ", ".join(kinds) or "no constituents"

@@ -74,7 +74,8 @@ def build_medium(planet: Planet, wavelengths: Array, bandwidth: float = BANDWIDT
     Returns
     -------
     Medium
-        Constituents in the preset's order.
+        Constituents in the preset's order; of a planet without air a single one that does
+        nothing to light.
 
     Raises
     ------
@@ -83,6 +84,8 @@ def build_medium(planet: Planet, wavelengths: Array, bandwidth: float = BANDWIDT
         not normalised.
     """
     r_top = planet.radius + planet.atmosphere_top
+    if not planet.constituents:
+        return _vacuum(planet.radius, r_top, eval_spectrum(planet.ground.albedo, wavelengths))
     altitude = altitude_nodes(planet.radius, r_top)
     density = np.stack([eval_profile(c.profile, altitude) for c in planet.constituents], axis=1)
     # Kernels take the density as linear between nodes, so the trapezoid is its exact column.
@@ -109,6 +112,25 @@ def build_medium(planet: Planet, wavelengths: Array, bandwidth: float = BANDWIDT
         phase=np.stack(phase),
         ground_albedo=eval_spectrum(planet.ground.albedo, wavelengths),
     )
+
+
+def _vacuum(r_bottom: float, r_top: float, ground_albedo: Array) -> Medium:
+    """Return a medium of one constituent that neither scatters nor absorbs."""
+    nothing = np.zeros((1, ground_albedo.size))
+    return Medium(
+        r_bottom=r_bottom,
+        r_top=r_top,
+        density=np.ones((altitude_nodes(r_bottom, r_top).size, 1)),
+        scattering=nothing,
+        extinction=nothing,
+        phase=_isotropic(ground_albedo.size)[None],
+        ground_albedo=ground_albedo,
+    )
+
+
+def _isotropic(wavelengths: int) -> Array:
+    """Phase function of what scatters nothing. [sr⁻¹]"""
+    return np.full((SCATTERING_ANGLES, wavelengths), 1.0 / (4.0 * np.pi))
 
 
 def vertical_columns(medium: Medium) -> Array:
@@ -148,8 +170,8 @@ def _optics(
         return scattering, np.zeros(len(wavelengths)), phase
     if isinstance(constituent, Absorber):
         cross_section = eval_band_mean(constituent.cross_section, wavelengths, bandwidth)
-        isotropic = np.full((SCATTERING_ANGLES, len(wavelengths)), 1.0 / (4.0 * np.pi))
-        return np.zeros(len(wavelengths)), cross_section * constituent.column / column, isotropic
+        absorption = cross_section * constituent.column / column
+        return np.zeros(len(wavelengths)), absorption, _isotropic(len(wavelengths))
     phase = build_phase(constituent.phase, wavelengths)
     if isinstance(constituent, Aerosol):
         extinction = aerosol_optical_depth(constituent, wavelengths) / column

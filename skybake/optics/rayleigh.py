@@ -110,13 +110,14 @@ def _methane(wavelengths: Array) -> tuple[Array, Array]:
 
 
 def _hydrogen(wavelengths: Array) -> tuple[Array, Array]:
-    """Peck & Huang (1977), at 0 deg C; anisotropy after Bridge & Buckingham (1966), 632.8 nm.
-
-    The latter is from memory; the depolarisation of 0.02 by Penndorf (1957) gives 1.034.
-    """
+    """Peck & Huang (1977), at 0 deg C; polarisabilities along and across the axis: Hohm (1993)."""
     inverse_square = (1e-3 * wavelengths) ** -2.0  # um⁻²
     at_freezing = 1e-6 * (14895.6 / (180.7 - inverse_square) + 4903.7 / (92.0 - inverse_square))
-    return at_freezing * _FROM_FREEZING, np.full(len(wavelengths), 1.0324)
+    energy_square = (1e7 / wavelengths / 219474.6305) ** 2  # of the photon, in hartree
+    along = 1.62632 / (0.23940245 - energy_square)
+    across = 1.40105 / (0.29486069 - energy_square)
+    anisotropy = (along - across) / ((along + 2.0 * across) / 3.0)
+    return at_freezing * _FROM_FREEZING, 1.0 + 2.0 / 9.0 * anisotropy**2
 
 
 def _helium(wavelengths: Array) -> tuple[Array, Array]:

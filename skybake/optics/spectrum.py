@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 
-from skybake.errors import PresetError
+from skybake.constants import ASTRONOMICAL_UNIT
+from skybake.errors import InputError, PresetError
 from skybake.preset import Spectrum, Star
 
 Array = npt.NDArray[np.float64]
@@ -74,6 +78,32 @@ def eval_band_mean(spectrum: Spectrum, wavelengths: Array, bandwidth: float) -> 
     integral = below[left] + (edges - nodes[left]) * (values[left] + at_edges) / 2.0
     mean: Array = (integral[1] - integral[0]) / (edges[1] - edges[0])
     return mean
+
+
+def star_at(star: Star, distance: float | None) -> Star:
+    """Return a star at another distance.
+
+    Parameters
+    ----------
+    star : Star
+        The preset's star.
+    distance : float or None
+        From the planet; None leaves it where it is. [au]
+
+    Raises
+    ------
+    InputError
+        If the distance is not finite, or within the star.
+    """
+    if distance is None:
+        return star
+    length = distance * ASTRONOMICAL_UNIT
+    if not star.radius < length < math.inf:
+        raise InputError(
+            f"sun distance: must be finite and greater than the star's radius, "
+            f"{star.radius / ASTRONOMICAL_UNIT:.4g} au, got {distance:g} au"
+        )
+    return replace(star, distance=length)
 
 
 def star_irradiance(star: Star, wavelengths: Array, bandwidth: float = BANDWIDTH) -> Array:

@@ -7,7 +7,8 @@ from pathlib import Path
 from threading import Event
 
 from skybake.image.image import Image, image_of_scene
-from skybake.image.picture import CodeValues, scene_ev, thumbnail
+from skybake.image.picture import CodeValues, picture_ev, thumbnail
+from skybake.image.picture_settings import PictureSettings
 from skybake.image.scene import Scene
 from skybake.image.settings import MapSettings
 from skybake.jit.workers import ALL_CPUS, Workers
@@ -100,8 +101,7 @@ class Pipeline:
         settings: MapSettings,
         *,
         width: int,
-        ev: float | None = None,
-        view: str = "aces2",
+        picture: PictureSettings | None = None,
         progress: Progress | None = None,
         cancel: Event | None = None,
     ) -> CodeValues:
@@ -113,10 +113,8 @@ class Pipeline:
             As of `image`.
         width : int
             [pixel]
-        ev : float, optional
-            Exposure value at ISO 100; by default a legible one.
-        view : {"aces2", "aces1"}, optional
-            Display transform.
+        picture : PictureSettings, optional
+            How it shows the sky.
 
         Returns
         -------
@@ -125,7 +123,8 @@ class Pipeline:
         """
         scene = self.scene(preset, settings, cancel)
         _prepare(scene, progress)
-        return thumbnail(scene, scene_ev(scene) if ev is None else ev, view, width)
+        picture = picture or PictureSettings()
+        return thumbnail(scene, picture_ev(scene, picture), picture, width)
 
 
 def _prepare(scene: Scene, progress: Progress | None) -> None:

@@ -32,7 +32,7 @@ class Sky(sky.Sky):
         Parameters
         ----------
         projection : Projection or str, optional
-            "equirect", "cubemap", "fisheye" or "perspective", or an object of these.
+            A name of `skybake.projection.PROJECTIONS`, such as "fisheye", or an object of these.
         width : int or tuple of int, optional
             Of the image, or width and height of a perspective picture. [pixel]
         **values
@@ -50,6 +50,7 @@ class Sky(sky.Sky):
             width,
             sun_elevation=self.sun_elevation,
             sun_azimuth=self.sun_azimuth,
+            sun_distance=self.sun_distance,
             method=self.method,
             altitude=self.altitude,
             **values,

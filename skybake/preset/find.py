@@ -34,7 +34,7 @@ def find_preset(name_or_path: str | Path) -> Path:
     ----------
     name_or_path : str or Path
         A name out of `preset_names`, or a file of the user's: a Path, or a text
-        that ends in ``.toml`` or has a path separator.
+        that ends in ``.toml``, in any case, or has a path separator.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def find_preset(name_or_path: str | Path) -> Path:
 
 def is_path(text: str) -> bool:
     """Whether a text is the path of a user's file rather than the name of a preset."""
-    return text.endswith(".toml") or "/" in text or "\\" in text
+    return text.lower().endswith(".toml") or "/" in text or "\\" in text
 
 
 def display_name(path: Path) -> str:

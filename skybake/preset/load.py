@@ -168,8 +168,8 @@ def _read_ground(top: Section) -> Ground:
 def _read_constituents(top: Section, highest: Top | None) -> tuple[Constituent, ...]:
     section = top.section("constituents")
     names = section.keys()
-    if not 1 <= len(names) <= MAX_CONSTITUENTS:
-        section.fail("", f"must be 1 to {MAX_CONSTITUENTS}, got {len(names)}")
+    if len(names) > MAX_CONSTITUENTS:
+        section.fail("", f"must be at most {MAX_CONSTITUENTS}, got {len(names)}")
     for name in names:
         if not NAME.fullmatch(name):
             section.fail("", f"names must consist of letters, digits, _ and -, got {shown(name)}")

@@ -7,24 +7,28 @@ from dataclasses import fields
 from typing import Any
 
 from skybake.errors import InputError
+from skybake.projection.angular import Angular
 from skybake.projection.chart import Projection
 from skybake.projection.cubemap import Cubemap
 from skybake.projection.equirect import Equirect
 from skybake.projection.fisheye import Fisheye
+from skybake.projection.octahedral import Octahedral
 from skybake.projection.perspective import Perspective
 
 __all__ = [
     "PROJECTIONS",
+    "Angular",
     "Cubemap",
     "Equirect",
     "Fisheye",
+    "Octahedral",
     "Perspective",
     "Projection",
     "find_projection",
 ]
 
 PROJECTIONS: dict[str, type[Projection]] = {
-    kind.name: kind for kind in (Equirect, Cubemap, Fisheye, Perspective)
+    kind.name: kind for kind in (Equirect, Cubemap, Fisheye, Perspective, Angular, Octahedral)
 }
 
 

@@ -25,10 +25,13 @@ class Chart(ABC):
     ----------
     width, height : int
         [pixel]
+    wraps : bool
+        Whether the last column is the neighbour of the first.
     """
 
     width: int
     height: int
+    wraps: ClassVar[bool] = False
 
     @abstractmethod
     def angles(self, first: int, last: int) -> tuple[Array, Array]:
@@ -66,6 +69,22 @@ class Chart(ABC):
             Centre of the disc and its angular radius. [rad]
         """
 
+    @abstractmethod
+    def places(self, vectors: Array) -> tuple[Array, Array]:
+        """Where the chart shows directions, the inverse of `angles`.
+
+        Parameters
+        ----------
+        vectors : ndarray of float64, shape (..., 3)
+            Unit vectors.
+
+        Returns
+        -------
+        row, column : ndarray of float64, shape (...)
+            In pixels from the upper left corner, so that centres are at a half; NaN for
+            directions that it does not show.
+        """
+
     def looks_nowhere(self, _first: int, _last: int) -> npt.NDArray[np.bool_] | None:
         """Pixels in rows first..last that stay black; None if there are none."""
         return None
@@ -81,14 +100,14 @@ class Part:
         The pixels.
     row, column : int
         Of its first pixel in the picture.
-    flip : {None, "rows", "columns"}
+    flip : {None, "rows", "columns", "both"}
         Whether it is upside down, or mirrored left to right.
     """
 
     chart: Chart
     row: int = 0
     column: int = 0
-    flip: Literal["rows", "columns"] | None = None
+    flip: Literal["rows", "columns", "both"] | None = None
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ from skybake.projection.frame import Frame
 from skybake.projection.gnomonic import GnomonicChart
 
 FACES = ("px", "nx", "py", "ny", "pz", "nz")
-LAYOUTS = ("faces", "cross", "exr")
+LAYOUTS = ("faces", "cross", "vertical-cross", "exr")
 
 # Right, up and forward of each face: direction = forward + u * right - v * up.
 _FRAMES = {
@@ -41,6 +41,9 @@ _FRAMES = {
 
 CROSS_ORIGINS = {"py": (0, 1), "nx": (1, 0), "pz": (1, 1), "px": (1, 2), "nz": (1, 3), "ny": (2, 1)}
 """Row and column, in edges, of each face in a horizontal cross of 3 by 4."""
+
+VERTICAL_ORIGINS = {**CROSS_ORIGINS, "nz": (3, 1)}
+"""The same of a vertical cross of 4 by 3, in which the last face is turned by 180 degrees."""
 
 
 class FaceChart(GnomonicChart):
@@ -80,8 +83,8 @@ class Cubemap(Projection):
     ----------
     edge : int
         Width and height of a face. [pixel]
-    layout : {"faces", "cross", "exr"}
-        Six files, one horizontal cross, or one OpenEXR cube environment.
+    layout : {"faces", "cross", "vertical-cross", "exr"}
+        Six files, one horizontal or vertical cross, or one OpenEXR cube environment.
     """
 
     name: ClassVar[str] = "cubemap"
@@ -117,6 +120,12 @@ class Cubemap(Projection):
                 for face, (row, column) in CROSS_ORIGINS.items()
             )
             return (Canvas(4 * edge, 3 * edge, crossed),)
+        if self.layout == "vertical-cross":
+            upright = tuple(
+                Part(charts[face], row * edge, column * edge, "both" if face == "nz" else None)
+                for face, (row, column) in VERTICAL_ORIGINS.items()
+            )
+            return (Canvas(3 * edge, 4 * edge, upright),)
         stacked = tuple(
             Part(chart, i * edge, flip=openexr_flip(face))
             for i, (face, chart) in enumerate(charts.items())
@@ -133,7 +142,9 @@ class Cubemap(Projection):
         return {"projection": self.name, "width": self.edge, "cube_layout": self.layout}
 
     def smaller(self, width: int) -> Projection:
-        """Return a cross."""
+        """Return a cross, upright if this is one."""
+        if self.layout == "vertical-cross":
+            return Cubemap(min(self.edge, width // 3), self.layout)
         return Cubemap(min(self.edge, width // 4), "cross")
 
     def glance(self, width: int) -> Projection:

@@ -2,7 +2,7 @@
 
 Row 0 looks up. Columns run clockwise as seen from above, from north at the
 left edge over east, south in the middle, and west. Texel centres are at
-(i + 1/2) / width.
+(i + 1/2) / width; rows can be on the poles instead, as the letter of OpenEXR has it.
 """
 
 from __future__ import annotations
@@ -15,16 +15,21 @@ from typing import Any, ClassVar, Self
 import numpy as np
 import numpy.typing as npt
 
-from skybake.angles import direction_from_angles
+from skybake.angles import direction_from_angles, zenith_azimuth
 from skybake.errors import InputError
-from skybake.projection.cells import CELLS_PER_RADIUS, Array, Cells, cover, subdivide
+from skybake.projection.cells import Array, Cells
 from skybake.projection.chart import Canvas, Chart, Projection, check_edge, size_text, whole
+from skybake.projection.polar import polar_cells
 
-EVERYWHERE = (-math.inf, math.inf)
+ROWS = ("centres", "poles")
+"""Where rows are: their centres at (i + 1/2) / height of the way from the zenith to the nadir, or
+at i / (height - 1), such that the first row is the zenith and the last one the nadir."""
 
 
-def row_zeniths(height: int) -> Array:
-    """Zenith angles of the rows' centres, shape (height,). [rad]"""
+def row_zeniths(height: int, rows: str = "centres") -> Array:
+    """Zenith angles of the rows, one of `ROWS`, shape (height,). [rad]"""
+    if rows == "poles":
+        return np.linspace(0.0, math.pi, height)
     return math.pi * (np.arange(height) + 0.5) / height
 
 
@@ -39,10 +44,47 @@ def directions(width: int, height: int) -> Array:
     return direction_from_angles(column_bearings(width), elevation[:, None])
 
 
-def solid_angles(width: int, height: int) -> Array:
-    """Solid angle of a texel in each row, shape (height,); width times their sum is 4 pi. [sr]"""
+def solid_angles(width: int, height: int, rows: str = "centres") -> Array:
+    """Solid angle of a texel in each row, shape (height,); width times their sum is 4 pi. [sr]
+
+    Rows at the poles count with what they add to a map that is interpolated between rows.
+    """
+    if rows == "poles":
+        step = _row_step(height, rows)
+        weight = np.sin(row_zeniths(height, rows)) * 4.0 * math.sin(0.5 * step) ** 2 / step
+        weight[[0, -1]] = _pole(step)[0]
+        size: Array = 2.0 * math.pi / width * weight
+        return size
     edge = np.cos(math.pi * np.arange(height + 1) / height)
     return 2.0 * math.pi / width * (edge[:-1] - edge[1:])
+
+
+def _row_step(height: int, rows: str) -> float:
+    return math.pi / (height - 1 if rows == "poles" else height)
+
+
+def _mean_cosines(height: int) -> Array:
+    """Mean cosine of the zenith angle by which rows at the poles light a map that is interpolated.
+
+    Each row fades linearly to its neighbours, which is integrated over the sphere.
+    """
+    step = _row_step(height, "poles")
+    cosine: Array = np.cos(row_zeniths(height, "poles")) * math.cos(0.5 * step) ** 2
+    _, pole = _pole(step)
+    cosine[[0, -1]] = pole, -pole
+    return cosine
+
+
+def _pole(step: float) -> tuple[float, float]:
+    """Height of the zone that a row at the pole makes up, and its mean cosine, see above.
+
+    By quadrature, since closed forms cancel.
+    """
+    node, weight = np.polynomial.legendre.leggauss(16)
+    theta = 0.5 * step * (node + 1.0)
+    share = 0.5 * step * weight * (1.0 - theta / step) * np.sin(theta)
+    height = float(share.sum())
+    return height, 1.0 - float((share * 2.0 * np.sin(0.5 * theta) ** 2).sum()) / height
 
 
 class EquirectChart(Chart):
@@ -52,22 +94,36 @@ class EquirectChart(Chart):
     ----------
     width : int
         Twice the height. [pixel]
+    rows : {"centres", "poles"}, optional
+        One of `ROWS`.
     """
 
-    def __init__(self, width: int) -> None:
+    wraps: ClassVar[bool] = True
+
+    def __init__(self, width: int, rows: str = "centres") -> None:
         self.width, self.height = width, width // 2
+        self._rows = rows
 
     def angles(self, first: int, last: int) -> tuple[Array, Array]:
         """Directions of the texels: rows share zenith angles, columns bearings."""
-        return row_zeniths(self.height)[first:last, None], column_bearings(self.width)[None]
+        zenith = row_zeniths(self.height, self._rows)
+        return zenith[first:last, None], column_bearings(self.width)[None]
+
+    def places(self, vectors: Array) -> tuple[Array, Array]:
+        """Where the map shows directions."""
+        zenith, bearing = zenith_azimuth(vectors)
+        turns = bearing / (2.0 * math.pi)
+        row = zenith / _row_step(self.height, self._rows)
+        row = row + 0.5 if self._rows == "poles" else row
+        return row, (turns - np.floor(turns)) * self.width
 
     def footprints(self, _first: int, _last: int) -> Array:
         """Extent of a texel in zenith angle."""
-        return np.full((1, 1), math.pi / self.height)
+        return np.full((1, 1), _row_step(self.height, self._rows))
 
     def solid_angles(self, first: int, last: int) -> Array:
         """Solid angle of a texel in each row, shape (row, 1). [sr]"""
-        return solid_angles(self.width, self.height)[first:last, None]
+        return solid_angles(self.width, self.height, self._rows)[first:last, None]
 
     def disc_cells(self, zenith: float, bearing: float, radius: float) -> Cells:
         """Cut a disc into cells, each of which adds to the four nearest texels.
@@ -79,45 +135,50 @@ class EquirectChart(Chart):
         its vertical component (the illuminance of the ground) at any size, and a sun
         that moves through a sequence does not flicker from texel to texel.
         """
-        width, height = self.width, self.height
-        row_step, column_step = math.pi / height, 2.0 * math.pi / width
-        # Cells that the edge cuts may have their centres outside it.
-        reach = radius * (1.0 + 2.0 / CELLS_PER_RADIUS)
-        rows, sub_row = subdivide(zenith - reach, zenith + reach, row_step, radius, (0, height))
-        if math.sin(zenith) <= math.sin(reach):
-            low, high, borders = 0.0, 2.0 * math.pi, (0.0, float(width))
-        else:
-            half_width = math.asin(math.sin(reach) / math.sin(zenith))
-            low, high, borders = bearing - half_width, bearing + half_width, EVERYWHERE
-        columns, sub_column = subdivide(
-            low, high, column_step, radius / max(math.sin(zenith), math.sin(radius)), borders
+        width, row_step = self.width, _row_step(self.height, self._rows)
+        column_step = 2.0 * math.pi / width
+        row, column, distance, solid_angle = polar_cells(
+            zenith,
+            bearing,
+            radius,
+            row_step=row_step,
+            column_step=column_step,
+            last_row=math.pi / row_step,
         )
-        size = 2.0 * np.sin(rows * row_step) * math.sin(0.5 * sub_row) * sub_column
-        row, column = (grid.ravel() for grid in np.meshgrid(rows, columns, indexing="ij"))
-        theta, phi = row * row_step, column * column_step - bearing
-        chord = np.sin(theta) * math.sin(zenith) * np.sin(0.5 * phi) ** 2
-        half_sine_squared = np.sin(0.5 * (theta - zenith)) ** 2 + chord
-        distance = 2.0 * np.arcsin(np.minimum(np.sqrt(half_sine_squared), 1.0))
-        # Cells are far from square near the poles. Across the edge they measure their
-        # height and width times the slopes of the distance along each.
-        across = math.sin(zenith) * np.sin(phi)
-        along = (
-            np.sin(theta - zenith) + 2.0 * np.cos(theta) * math.sin(zenith) * np.sin(0.5 * phi) ** 2
-        )
-        extent = np.abs(along) * sub_row + np.abs(across) * np.sin(theta) * sub_column
-        extent /= np.maximum(np.sin(distance), 1e-12)
-        distance, covered = cover(distance, radius, extent, np.repeat(size, columns.size))
-        inside = covered > 0.0
-        row, column = row[inside], column[inside]
-        texel, weight = _bilinear(width, height, row, column)
+        theta = row * row_step
+        top, down = self._nearest_rows(row, theta)
+        left = np.floor(column - 0.5).astype(np.int64)
+        right = column - 0.5 - left
+        columns, size = (left % width, (left + 1) % width), self.solid_angles(0, self.height)[:, 0]
         return Cells(
-            zenith=theta[inside],
-            azimuth=phi[inside] + bearing,
-            distance=distance[inside],
-            solid_angle=covered[inside],
-            texel=texel,
-            weight=weight,
+            zenith=theta,
+            azimuth=column * column_step,
+            distance=distance,
+            solid_angle=solid_angle,
+            texel=np.stack([y * width + x for y in (top, top + 1) for x in columns], axis=1),
+            weight=np.stack(
+                [
+                    (1.0 - down) * (1.0 - right) / size[top],
+                    (1.0 - down) * right / size[top],
+                    down * (1.0 - right) / size[top + 1],
+                    down * right / size[top + 1],
+                ],
+                axis=1,
+            ),
         )
+
+    def _nearest_rows(self, row: Array, zenith: Array) -> tuple[npt.NDArray[np.int64], Array]:
+        """Upper one of the two rows that share each cell's flux, and the lower one's share."""
+        height = self.height
+        if self._rows == "centres":
+            cosine = np.cos(row_zeniths(height))
+            top = np.floor(row - 0.5).astype(np.int64)
+        else:
+            cosine = _mean_cosines(height)
+            top = np.searchsorted(-cosine, -np.cos(zenith), side="right") - 1
+        top = np.clip(top, 0, height - 2)
+        down = (cosine[top] - np.cos(zenith)) / (cosine[top] - cosine[top + 1])
+        return top, np.clip(down, 0.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -128,14 +189,19 @@ class Equirect(Projection):
     ----------
     width : int
         Twice the height. [pixel]
+    rows : {"centres", "poles"}
+        One of `ROWS`.
     """
 
     name: ClassVar[str] = "equirect"
     lights_a_dome: ClassVar[bool] = True
     width: int = 2048
+    rows: str = "centres"
 
     def __post_init__(self) -> None:
         """Refuse what cannot be baked."""
+        if self.rows not in ROWS:
+            raise InputError(f"equirect rows: must be one of {', '.join(ROWS)}, got {self.rows!r}")
         check_edge(self.width, smallest=4)
         if self.width % 2:
             raise InputError(f"size: width must be twice the height, got an odd width {self.width}")
@@ -151,16 +217,21 @@ class Equirect(Projection):
 
     def canvases(self) -> tuple[Canvas, ...]:
         """Return the one picture."""
-        return (whole(EquirectChart(self.width), envmap="latlong"),)
+        return (whole(EquirectChart(self.width, self.rows), envmap="latlong"),)
 
     @property
     def label(self) -> str:
         """How file names denote it."""
-        return self.name
+        return self.name if self.rows == ROWS[0] else f"{self.name}_{self.rows}"
 
     def recipe(self) -> dict[str, Any]:
-        """Name and width."""
-        return {"projection": self.name, "width": self.width, "cube_layout": None}
+        """Name, width and place of the rows."""
+        return {
+            "projection": self.name,
+            "width": self.width,
+            "cube_layout": None,
+            "equirect_rows": self.rows,
+        }
 
     def smaller(self, width: int) -> Projection:
         """Return a map of at most this width."""
@@ -169,31 +240,3 @@ class Equirect(Projection):
     def glance(self, width: int) -> Projection:
         """Return the whole sphere."""
         return Equirect(width)
-
-
-def _bilinear(
-    width: int, height: int, row: Array, column: Array
-) -> tuple[npt.NDArray[np.int64], Array]:
-    """Flat indices of the four texels around points, and their weights [sr⁻¹]."""
-    top = np.clip(np.floor(row - 0.5).astype(np.int64), 0, height - 2)
-    cosine = np.cos(row_zeniths(height))
-    down = (cosine[top] - np.cos(row * math.pi / height)) / (cosine[top] - cosine[top + 1])
-    down = np.clip(down, 0.0, 1.0)
-    left = np.floor(column - 0.5).astype(np.int64)
-    right = column - 0.5 - left
-    left, next_left = left % width, (left + 1) % width
-    size = solid_angles(width, height)
-    texel = np.stack(
-        [y * width + x for y in (top, top + 1) for x in (left, next_left)],
-        axis=1,
-    )
-    weight = np.stack(
-        [
-            (1.0 - down) * (1.0 - right) / size[top],
-            (1.0 - down) * right / size[top],
-            down * (1.0 - right) / size[top + 1],
-            down * right / size[top + 1],
-        ],
-        axis=1,
-    )
-    return texel, weight

@@ -31,8 +31,11 @@ from skybake.projection.frame import (
     look_label,
     zenith_extent,
 )
+from skybake.units import degrees
 
 WIDEST = math.radians(270.0)
+
+_SMALLEST = 1e-300
 
 
 class FisheyeChart(Chart):
@@ -56,6 +59,17 @@ class FisheyeChart(Chart):
     def angles(self, first: int, last: int) -> tuple[Array, Array]:
         """Directions of the pixels in rows first..last."""
         return zenith_azimuth(self._vectors(*self._plane(first, last)))
+
+    def places(self, vectors: Array) -> tuple[Array, Array]:
+        """Where the circle shows directions."""
+        frame, half = self._frame, 0.5 * self._fov
+        x, y = vectors @ frame.right, -(vectors @ frame.up)
+        aside = np.hypot(x, y)
+        off_axis = np.arctan2(aside, vectors @ frame.forward)
+        stretch = off_axis / np.maximum(aside, _SMALLEST)
+        shown = off_axis <= half
+        row, column = (y * stretch + half) / self._step, (x * stretch + half) / self._step
+        return np.where(shown, row, np.nan), np.where(shown, column, np.nan)
 
     def footprints(self, first: int, last: int) -> Array:
         """Extents of pixels in zenith angle."""
@@ -194,9 +208,9 @@ class Fisheye(Projection):
         return {
             "projection": self.name,
             "width": self.edge,
-            "fov_deg": math.degrees(self.fov),
-            "look_azimuth_deg": math.degrees(self.azimuth),
-            "look_elevation_deg": math.degrees(self.elevation),
+            "fov_deg": degrees(self.fov),
+            "look_azimuth_deg": degrees(self.azimuth),
+            "look_elevation_deg": degrees(self.elevation),
         }
 
     def smaller(self, width: int) -> Projection:

@@ -19,6 +19,9 @@ from skybake.projection.cells import (
 from skybake.projection.chart import Chart
 from skybake.projection.frame import Frame, zenith_extent
 
+# A direction on the edge of a cube belongs to one of two faces, or by rounding to neither.
+_ROUNDING = 1e-9
+
 
 class GnomonicChart(Chart):
     """Pixels evenly spaced on a plane at distance 1.
@@ -48,6 +51,18 @@ class GnomonicChart(Chart):
     def angles(self, first: int, last: int) -> tuple[Array, Array]:
         """Directions of the pixels in rows first..last."""
         return zenith_azimuth(self.vectors(first, last))
+
+    def places(self, vectors: Array) -> tuple[Array, Array]:
+        """Where the picture shows directions."""
+        frame = self.frame
+        before = vectors @ frame.forward
+        with np.errstate(divide="ignore", invalid="ignore"):
+            u, v = vectors @ frame.right / before, -(vectors @ frame.up) / before
+            column = 0.5 * self.width * (u / self._half_width + 1.0)
+            row = 0.5 * self.height * (v / self._half_height + 1.0)
+        shown = (before > 0.0) & (np.abs(2.0 * column / self.width - 1.0) <= 1.0 + _ROUNDING)
+        shown &= np.abs(2.0 * row / self.height - 1.0) <= 1.0 + _ROUNDING
+        return np.where(shown, row, np.nan), np.where(shown, column, np.nan)
 
     def footprints(self, first: int, last: int) -> Array:
         """Extents of pixels in zenith angle."""

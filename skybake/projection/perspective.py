@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
 
 from skybake.errors import InputError
+from skybake.projection.cells import Array
 from skybake.projection.chart import Canvas, Projection, check_edge, size_text, whole
 from skybake.projection.frame import check_look, look_frame, look_label
 from skybake.projection.gnomonic import GnomonicChart
+from skybake.units import degrees
 
 WIDEST = math.radians(170.0)
 LARGEST_PREVIEW = 1920
@@ -61,10 +63,7 @@ class Perspective(Projection):
 
     def canvases(self) -> tuple[Canvas, ...]:
         """Return the one picture."""
-        frame = look_frame(self.azimuth, self.elevation)
-        half_width = math.tan(0.5 * self.fov)
-        half_height = half_width * self.height / self.width
-        return (whole(GnomonicChart(frame, half_width, half_height, self.width, self.height)),)
+        return (whole(self._chart()),)
 
     @property
     def label(self) -> str:
@@ -78,9 +77,9 @@ class Perspective(Projection):
             "projection": self.name,
             "width": self.width,
             "height": self.height,
-            "fov_deg": math.degrees(self.fov),
-            "look_azimuth_deg": math.degrees(self.azimuth),
-            "look_elevation_deg": math.degrees(self.elevation),
+            "fov_deg": degrees(self.fov),
+            "look_azimuth_deg": degrees(self.azimuth),
+            "look_elevation_deg": degrees(self.elevation),
         }
 
     def smaller(self, width: int) -> Projection:
@@ -92,3 +91,17 @@ class Perspective(Projection):
         """Return the same picture of another width."""
         height = max(1, round(self.height * width / self.width))
         return Perspective(width, height, self.fov, self.azimuth, self.elevation)
+
+    def finer(self, times: int) -> Perspective:
+        """Return the same picture of that many times the width and the height."""
+        return replace(self, width=self.width * times, height=self.height * times)
+
+    def vectors(self) -> Array:
+        """Return unit vectors of all pixels, shape (row, column, 3); +Y up, -Z north, +X east."""
+        return self._chart().vectors(0, self.height)
+
+    def _chart(self) -> GnomonicChart:
+        frame = look_frame(self.azimuth, self.elevation)
+        half_width = math.tan(0.5 * self.fov)
+        half_height = half_width * self.height / self.width
+        return GnomonicChart(frame, half_width, half_height, self.width, self.height)

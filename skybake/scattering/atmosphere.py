@@ -12,11 +12,12 @@ from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.delta_m import ScaledMedium, keep_unscaled, phase_groups, scale_medium
 from skybake.optics.medium import Medium, pad_wavelengths
 from skybake.optics.phase_basis import PhaseBasis, build_phase_basis
+from skybake.scattering.aureole import Aureole, no_aureole
 from skybake.scattering.closure import close_field
 from skybake.scattering.field import DiffuseField, altitude_layers, sun_bins, sun_factors
 from skybake.scattering.grid import ORDER, no_field
 from skybake.scattering.harmonics import build_harmonics
-from skybake.scattering.solver import solve_field
+from skybake.scattering.solver import solve_light
 from skybake.scattering.store import (
     arrays_from_content,
     content_from_arrays,
@@ -53,8 +54,9 @@ def build_atmosphere(medium: Medium, method: str, workers: Workers = ALL_CPUS) -
         If all orders were asked for, and the atmosphere is too thick or its peaks too strong.
     """
     dark = dark_atmosphere(medium, method, workers)
-    solve = solve_field if method == "full" else close_field
-    return dark._replace(field=solve(dark, workers))
+    if method == "full":
+        return solve_light(dark, workers)
+    return dark._replace(field=close_field(dark, workers))
 
 
 def dark_atmosphere(medium: Medium, method: str, workers: Workers = ALL_CPUS) -> Atmosphere:
@@ -70,6 +72,7 @@ def dark_atmosphere(medium: Medium, method: str, workers: Workers = ALL_CPUS) ->
         shells=altitude_shells(medium),
         columns=build_columns(padded, workers=workers),
         field=no_field(scaled),
+        aureole=no_aureole(scaled),
         basis=build_phase_basis(
             scaled.phase[..., : medium.ground_albedo.size], phase_groups(scaled)
         ),
@@ -151,6 +154,7 @@ def _to_arrays(atmosphere: Atmosphere) -> dict[str, Any]:
         "source": field.source,
         "radiance": field.radiance,
         "ground": field.ground,
+        "aureole": atmosphere.aureole.source,
         "basis_curves": atmosphere.basis.curves,
         "basis_weights": atmosphere.basis.weights,
     }
@@ -183,5 +187,6 @@ def _from_arrays(medium: Medium, arrays: dict[str, Any]) -> Atmosphere:
         shells=arrays["shells"],
         columns=arrays["columns"],
         field=field,
+        aureole=Aureole(arrays["aureole"]),
         basis=PhaseBasis(arrays["basis_curves"], arrays["basis_weights"]),
     )

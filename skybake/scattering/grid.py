@@ -29,8 +29,13 @@ LAST_JUDGED_THICK = math.radians(97.0)
 """Solar zenith angles beyond which it is night, and, if the atmosphere is thick, beyond which
 light settles very slowly. [rad]"""
 
-UPWARD = 12
+UPWARD = 18
 DOWNWARD = 6
+"""Directions above and below the horizon; in deep twilight all light comes from a low arch."""
+
+COARSE_UPWARD = 12
+COARSE_DOWNWARD = 6
+"""Directions of a field of few harmonics."""
 
 # Spacing of the sun's zenith angles: fine where the planet's shadow passes through
 # the atmosphere, and not too wide at the zenith, near which moments vary as sin(angle)**m.
@@ -50,6 +55,8 @@ class Grid(NamedTuple):
     mu, weight : ndarray, shape (altitude, polar)
         Zenith cosines of the directions at each altitude and their shares of
         d mu, apart above and below the local horizon.
+    upward : int
+        Directions above the horizon, which are the first.
     azimuth : ndarray, shape (azimuth,)
         Midpoints of half the circle. [rad]
     last_judged : float
@@ -60,6 +67,7 @@ class Grid(NamedTuple):
     sun_angle: Array
     mu: Array
     weight: Array
+    upward: int
     azimuth: Array
     last_judged: float
 
@@ -70,18 +78,23 @@ def build_grid(scaled: ScaledMedium) -> Grid:
     depth = thickest_depth(medium)
     more = round(ALTITUDES_PER_DEPTH * max(depth - THIN_DEPTH, 0.0))
     altitude = altitude_shells(medium, min(ALTITUDES + more, MAX_ALTITUDES))
-    mu, weight = zip(
-        *(_split_directions(medium.r_bottom, h, UPWARD, DOWNWARD) for h in altitude), strict=True
-    )
+    mu, weight = _directions(medium.r_bottom, altitude, UPWARD, DOWNWARD)
     dip = math.acos(medium.r_bottom / medium.r_top)
     return Grid(
         altitude=altitude,
         sun_angle=sun_angles(min(math.pi, math.pi / 2.0 + max(2.5 * dip, math.radians(28.0)))),
-        mu=np.stack(mu),
-        weight=np.stack(weight),
+        mu=mu,
+        weight=weight,
+        upward=UPWARD,
         azimuth=azimuths(ORDER),
         last_judged=LAST_JUDGED if depth <= THIN_DEPTH else LAST_JUDGED_THICK,
     )
+
+
+def coarsen_grid(grid: Grid, r_bottom: float, order: int) -> Grid:
+    """Keep the altitudes and suns, but only directions that hold a field of few harmonics."""
+    mu, weight = _directions(r_bottom, grid.altitude, COARSE_UPWARD, COARSE_DOWNWARD)
+    return grid._replace(mu=mu, weight=weight, upward=COARSE_UPWARD, azimuth=azimuths(order))
 
 
 def thickest_depth(medium: Medium) -> float:
@@ -101,6 +114,16 @@ def sun_angles(last: float) -> Array:
         middle = angles[-1] + 0.5 * np.interp(angles[-1], _SPACING_AT, _SPACING)
         angles.append(angles[-1] + float(np.interp(middle, _SPACING_AT, _SPACING)))
     return np.radians(np.array(angles) * math.degrees(last) / angles[-1])
+
+
+def _directions(
+    r_bottom: float, altitude: Array, upward: int, downward: int
+) -> tuple[Array, Array]:
+    """Zenith cosines at each altitude and their weights, each of shape (altitude, polar)."""
+    mu, weight = zip(
+        *(_split_directions(r_bottom, h, upward, downward) for h in altitude), strict=True
+    )
+    return np.stack(mu), np.stack(weight)
 
 
 def _split_directions(r_bottom: float, h: float, upward: int, downward: int) -> tuple[Array, Array]:
@@ -166,6 +189,6 @@ def project(
     moments = np.tensordot(basis, radiance, axes=([1, 2], [0, 2]))
     field.radiance[i] = moments.transpose(1, 0, 2)
     if i == 0:
-        up = slice(0, UPWARD)
+        up = slice(0, grid.upward)
         flux = grid.weight[0][up] * grid.mu[0][up] * 2.0 * math.pi
         field.ground[...] = np.tensordot(flux, radiance[up].mean(axis=2), axes=1)

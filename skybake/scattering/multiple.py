@@ -21,7 +21,8 @@ from skybake.scattering.harmonics import fill_harmonics
 from skybake.transport.geometry import radius_at
 
 NEGLIGIBLE = 3e-4
-"""Share of a ray's scattering below which a sky leaves out an order l of a sample."""
+"""Share of what a sample scatters below which its moments of order l are left out. It is not a
+share of what the whole ray scatters: in twilight the thin air aloft carries most of the light."""
 
 
 class Scratch(NamedTuple):
@@ -39,8 +40,8 @@ class Scratch(NamedTuple):
         Spherical harmonics, and what of them is scattered.
     scattering : ndarray of float32, shape (degree, wavelength)
         What a step scatters.
-    weight, negligible, sky : ndarray, shape (wavelength,)
-        Of a step, of a ray, and on the ground.
+    weight, sky : ndarray, shape (wavelength,)
+        Of a step, and on the ground.
     """
 
     node: npt.NDArray[np.int64]
@@ -52,7 +53,6 @@ class Scratch(NamedTuple):
     factor: npt.NDArray[np.float32]
     scattering: npt.NDArray[np.float32]
     weight: npt.NDArray[np.float32]
-    negligible: npt.NDArray[np.float32]
     sky: Array
 
 
@@ -71,7 +71,6 @@ def allocate_scratch(field: DiffuseField, fans: Fans) -> Scratch:
         factor=np.empty(harmonics * wavelengths, np.float32),
         scattering=np.empty((orders, wavelengths), np.float32),
         weight=np.empty(wavelengths, np.float32),
-        negligible=np.empty(wavelengths, np.float32),
         sky=np.empty(wavelengths),
     )
 
@@ -83,7 +82,7 @@ def side_by_side(field: DiffuseField) -> npt.NDArray[np.float32]:
 
 
 @kernel
-def add_diffuse(field, radiance, medium, negligible_share, fans, begin, end, samples, scratch, out):
+def add_diffuse(field, radiance, medium, fans, begin, end, samples, scratch, out):
     """Add the light that rays bring out of the diffuse field.
 
     Parameters
@@ -94,8 +93,6 @@ def add_diffuse(field, radiance, medium, negligible_share, fans, begin, end, sam
         Its moments once more, from `side_by_side`.
     medium : Medium
         The atmosphere.
-    negligible_share : float
-        Share of what a fan's samples scatter below which an order l of one is left out.
     fans : Fans
         The rays.
     begin, end, samples
@@ -114,23 +111,17 @@ def add_diffuse(field, radiance, medium, negligible_share, fans, begin, end, sam
     node, weights, cosine = scratch.node, scratch.weights, scratch.cosine
     fourier, series = scratch.fourier, scratch.series
     harmonic, factor, scattering = scratch.harmonic, scratch.factor, scratch.scattering
-    weight, negligible, sky = scratch.weight, scratch.negligible, scratch.sky
+    weight, sky = scratch.weight, scratch.sky
     for fan in range(begin, end):
         i, count = fans.first[fan], fans.first[fan + 1] - fans.first[fan]
         r, mu = fans.starts[fan, 0], fans.starts[fan, 1]
         first = samples.first[fan - begin]
         last = first + samples.number[fan - begin]
-        negligible[:] = 0.0
-        for n in range(first, last):
-            for c in range(field.source.shape[0]):
-                density = negligible_share * samples.density[n, c]
-                for k in range(wavelengths):
-                    negligible[k] += density * field.source[c, 0, k] * samples.weight[n, k]
         # The field is smooth within a step, so that its two samples share a lookup where
         # the middle of what they scatter is.
         for n in range(first, last, 2):
             _fill_scattering(field, samples, n, weight, scattering)
-            degrees = _count_degrees(scattering, negligible)
+            degrees = _count_degrees(scattering)
             if degrees == 0:
                 continue
             share = _second_share(field, samples, n)
@@ -186,12 +177,13 @@ def _second_share(field, samples, n):
 
 
 @kernel
-def _count_degrees(scattering, negligible):
-    """Orders l of a sample that matter beside what all samples of the ray scatter."""
+def _count_degrees(scattering):
+    """Orders l that matter beside all that a step scatters, none where that is nothing."""
+    share = np.float32(NEGLIGIBLE)
     for degree in range(scattering.shape[0] - 1, -1, -1):
         needed = 0
-        for k in range(negligible.size):
-            needed += abs(scattering[degree, k]) > negligible[k]
+        for k in range(scattering.shape[1]):
+            needed += abs(scattering[degree, k]) > share * scattering[0, k]
         if needed > 0:
             return degree + 1
     return 0

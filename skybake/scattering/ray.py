@@ -11,8 +11,9 @@ from skybake.jit.arguments import Flat, flatten
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.delta_m import PEAK_NODES
 from skybake.optics.medium import Array
+from skybake.scattering.aureole import add_aureole, allocate_aureole_scratch
 from skybake.scattering.fans import Fans, group_rays
-from skybake.scattering.multiple import NEGLIGIBLE, add_diffuse, allocate_scratch, side_by_side
+from skybake.scattering.multiple import add_diffuse, allocate_scratch, side_by_side
 from skybake.scattering.single import add_single_scattering
 from skybake.scattering.sunlit import allocate_sunlit
 from skybake.scattering.tables import Atmosphere
@@ -113,8 +114,6 @@ class LightOfFans:
         Receives light as of `RayLight`.
     diffuse : ndarray of float32, shape (ray, wavelength)
         Receives light as of `RayLight`.
-    negligible_share : float, optional
-        As of `add_diffuse`.
     """
 
     def __init__(
@@ -123,23 +122,33 @@ class LightOfFans:
         fans: Fans,
         single: Array,
         diffuse: npt.NDArray[np.float32],
-        negligible_share: float = NEGLIGIBLE,
     ) -> None:
         scaled, field = atmosphere.scaled, atmosphere.field
         self._medium, self._field, self._fans = scaled.medium, field, fans
+        self._scaled = scaled
         # A field on less than two altitudes holds no light.
         self._has_field = field.altitude.size > 1
         self._sources = [flatten(each) for each in (scaled, PEAK_NODES, atmosphere.columns)]
         self._moments = [flatten(each) for each in (field, side_by_side(field), scaled.medium)]
-        self._negligible_share = negligible_share
+        # Only a medium with peaks that matter has an aureole.
+        self._has_aureole = atmosphere.aureole.source.shape[2] > 0
+        self._bent = [flatten(each) for each in (atmosphere.aureole, field, scaled)]
         self._rays, self._single, self._diffuse = map(flatten, (fans, single, diffuse))
 
-    def allocate(self) -> Flat | None:
+    def allocate(self) -> tuple[Flat | None, Flat | None]:
         """Make the work space that a thread needs for `add`."""
-        return flatten(allocate_scratch(self._field, self._fans)) if self._has_field else None
+        return (
+            flatten(allocate_scratch(self._field, self._fans)) if self._has_field else None,
+            flatten(allocate_aureole_scratch(self._scaled)) if self._has_aureole else None,
+        )
 
     def add(
-        self, begin: int, end: int, samples: Samples, filled: Flat, scratch: Flat | None
+        self,
+        begin: int,
+        end: int,
+        samples: Samples,
+        filled: Flat,
+        scratch: tuple[Flat | None, Flat | None],
     ) -> None:
         """Add the light of fans `begin` to `end`, whose samples are given twice."""
         batch = self._rays, begin, end, filled
@@ -147,5 +156,6 @@ class LightOfFans:
         sunlit = allocate_sunlit(self._medium, most)
         add_single_scattering(*self._sources, *batch, sunlit, self._single, self._diffuse)
         if self._has_field:
-            share = self._negligible_share
-            add_diffuse(*self._moments, share, *batch, scratch, self._diffuse)
+            add_diffuse(*self._moments, *batch, scratch[0], self._diffuse)
+        if self._has_aureole:
+            add_aureole(*self._bent, *batch, scratch[1], self._diffuse)

@@ -17,10 +17,6 @@ from skybake.scattering.tables import Atmosphere
 from skybake.transport.samples import BATCH_RAYS, allocate_samples
 from skybake.transport.trace import MAX_ARC, trace_spans
 
-NEGLIGIBLE_OF_SPAN = 1e-6
-"""Share of a span's scattering below which it leaves out an order l of a sample: spans add up to
-a whole, so what is small beside one has to be kept better than along a whole ray."""
-
 SHORTEST = 1e-9
 """To which distances are taken, so that no step is shorter. [km]"""
 
@@ -64,7 +60,6 @@ def trace_segments(
     distances: npt.ArrayLike,
     *,
     max_arc: float = MAX_ARC,
-    negligible_share: float = NEGLIGIBLE_OF_SPAN,
     workers: Workers = ALL_CPUS,
 ) -> SegmentLight:
     """Integrate the light along rays up to each of several distances, in parallel.
@@ -75,8 +70,6 @@ def trace_segments(
         As of `trace_rays`.
     distances : array_like, shape (distance,) or (ray, distance)
         From the rays' starts, ascending; may be infinite. Taken to the micrometre. [km]
-    negligible_share : float, optional
-        As of `add_diffuse`.
 
     Returns
     -------
@@ -91,7 +84,7 @@ def trace_segments(
     Notes
     -----
     Steps end at the distances; samples and kernels are otherwise those of `trace_rays`, whose
-    very result comes from an infinite distance and its share of what is negligible.
+    very result comes from an infinite distance.
     """
     scaled = atmosphere.scaled
     phases, _, wavelengths = scaled.phase.shape
@@ -103,7 +96,7 @@ def trace_segments(
     diffuse = np.zeros((len(ray), wavelengths), np.float32)
     transmittance = np.empty((len(spans.starts), wavelengths))
     column = np.empty((len(spans.starts), len(scaled.medium.extinction)))
-    light = LightOfFans(atmosphere, spans, single, diffuse, negligible_share)
+    light = LightOfFans(atmosphere, spans, single, diffuse)
     medium, starts, fan_ends = map(
         flatten, (scaled.medium, fans.starts, np.ascontiguousarray(ends[fans.first[:-1]]))
     )

@@ -15,26 +15,27 @@ from skybake.optics.delta_m import ScaledMedium
 from skybake.optics.legendre import legendre_polynomials
 from skybake.optics.medium import Array
 from skybake.scattering.anderson import Anderson
+from skybake.scattering.aureole_solver import has_aureole, solve_aureole
 from skybake.scattering.fans import group_rays
 from skybake.scattering.field import DiffuseField, lower_order, raise_order, sum_fields
 from skybake.scattering.grid import (
     ORDER,
     Grid,
-    azimuths,
     build_grid,
+    coarsen_grid,
     empty_field,
     no_field,
     project,
 )
 from skybake.scattering.limits import check_medium
-from skybake.scattering.multiple import NEGLIGIBLE, add_diffuse, allocate_scratch, side_by_side
+from skybake.scattering.multiple import add_diffuse, allocate_scratch, side_by_side
 from skybake.scattering.ray import trace_rays
 from skybake.scattering.tables import Atmosphere
 from skybake.transport.samples import allocate_samples
 from skybake.transport.shells import altitude_shells
 from skybake.transport.trace import trace
 
-FIRST_SHELLS = 15
+FIRST_SHELLS = 30
 SHELLS = 20
 TOLERANCE = 5e-3
 """Relative change by the scatterings that follow the last pass, at which iteration ends; of
@@ -63,7 +64,7 @@ ARC = math.radians(2.0)
 FIRST_ARC = math.radians(1.5)
 
 
-def solve_field(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> DiffuseField:
+def solve_light(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> Atmosphere:
     """Solve for the light that was scattered at least once.
 
     Parameters
@@ -75,8 +76,8 @@ def solve_field(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> DiffuseF
 
     Returns
     -------
-    DiffuseField
-        Moments of all orders of scattering and reflection.
+    Atmosphere
+        With its field, which holds all orders of scattering and reflection, and its aureole.
 
     Raises
     ------
@@ -102,10 +103,13 @@ def solve_field(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> DiffuseF
     scaled = atmosphere.scaled
     check_medium(scaled)
     grid = build_grid(scaled)
-    coarse_grid = grid._replace(azimuth=azimuths(COARSE_ORDER))
-    traced = _trace_grid(scaled, grid)
-    coarse_rays, rays = _fan_out(scaled, coarse_grid, traced), _fan_out(scaled, grid, traced)
+    dark = empty_field(scaled, grid.altitude, grid.sun_angle, ORDER)
+    coarse_grid = coarsen_grid(grid, scaled.medium.r_bottom, COARSE_ORDER)
+    coarse_rays, rays = _trace_grid(scaled, coarse_grid), _trace_grid(scaled, grid)
     first = _first_order(atmosphere, grid, workers)
+    if has_aureole(atmosphere):
+        aureole, bent = solve_aureole(atmosphere, grid, dark, workers)
+        atmosphere, first = atmosphere._replace(aureole=aureole), sum_fields(first, bent, 1.0)
 
     def scatter(field: DiffuseField) -> DiffuseField:
         return _scatter(scaled, field, grid, rays, workers)
@@ -124,7 +128,7 @@ def solve_field(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> DiffuseF
         field = raise_order(settled, new, twice)
         change = _relative(_state(settled) - _state(new), _state(total), grid)
         if change.max() < TOLERANCE:
-            return field
+            return atmosphere._replace(field=field)
         if not np.isfinite(change).all():
             break
     raise _no_convergence(MAX_PASSES, TOLERANCE, float(change.max()))
@@ -242,13 +246,6 @@ def _trace_grid(scaled: ScaledMedium, grid: Grid) -> list[Batch]:
     return batches
 
 
-def _fan_out(scaled: ScaledMedium, grid: Grid, traced: list[Batch]) -> list[Batch]:
-    """Give traced directions the suns and azimuths of a grid."""
-    nodes = range(grid.altitude.size)
-    fans = [flatten(group_rays(_rays_at(scaled, grid, node))) for node in nodes]
-    return [batch._replace(fans=fans[batch.node]) for batch in traced]
-
-
 def _scatter(
     scaled: ScaledMedium, field: DiffuseField, grid: Grid, batches: list[Batch], workers: Workers
 ) -> DiffuseField:
@@ -261,7 +258,7 @@ def _scatter(
         for batch in batches[first:last]:
             scratch = allocate_scratch(field, batch.fans.value)
             rays = batch.fans, batch.begin, batch.end, batch.samples
-            add_diffuse(*light, NEGLIGIBLE, *rays, scratch, out[batch.node])
+            add_diffuse(*light, *rays, scratch, out[batch.node])
 
     workers.run_rows(len(batches), work)
     scattered = field._replace(

@@ -10,6 +10,7 @@ import numpy as np
 from skybake.optics.delta_m import PEAK_NODES
 from skybake.optics.medium import Medium, pad_wavelengths
 from skybake.optics.phase import SCATTERING_ANGLES
+from skybake.scattering.aureole import ANGLES, ORDERS
 from skybake.scattering.transmittance import SHAPE
 
 Shape = tuple[int | str, ...]
@@ -35,6 +36,7 @@ _SHAPES: dict[str, tuple[type, Shape]] = {
     "source": (np.float64, ("constituent", "moment", "padded wavelength")),
     "radiance": (np.float32, ("altitude", "sun", "harmonic", "padded wavelength")),
     "ground": (np.float64, ("sun", "padded wavelength")),
+    "aureole": (np.float32, ("aureole altitude", "aureole sun", "aureole angle", "aureole term")),
     "basis_curves": (np.float64, ("basis curve", SCATTERING_ANGLES)),
     "basis_weights": (np.float64, ("phase function", "wavelength", "basis curve")),
 }
@@ -58,6 +60,10 @@ def are_tables_of(medium: Medium, arrays: Mapping[str, Any]) -> bool:
         "harmonic": (order + 1) * (order + 2) // 2,
         "phase function": sizes["constituent"] + len(PEAK_NODES) * sizes["peak"],
     }
+    if sizes["aureole angle"] > 0:
+        related |= {"aureole altitude": sizes["altitude"], "aureole sun": sizes["sun"]}
+        related["aureole angle"] = ANGLES
+    related["aureole term"] = ORDERS * sizes["padded wavelength"]
     return (
         all(sizes[name] == size for name, size in related.items())
         and sizes["sun"] >= 4

@@ -7,6 +7,7 @@ from typing import NamedTuple
 from skybake.optics.delta_m import ScaledMedium
 from skybake.optics.medium import Array, Medium
 from skybake.optics.phase_basis import PhaseBasis
+from skybake.scattering.aureole import Aureole
 from skybake.scattering.field import DiffuseField
 
 
@@ -26,6 +27,8 @@ class Atmosphere(NamedTuple):
         Columns toward a source, see `build_columns`.
     field : DiffuseField
         The light that was scattered before.
+    aureole : Aureole
+        What forward peaks scatter of light that other peaks bent.
     basis : PhaseBasis
         Curves that the phase functions of `scaled` are sums of.
     """
@@ -35,4 +38,5 @@ class Atmosphere(NamedTuple):
     shells: Array
     columns: Array
     field: DiffuseField
+    aureole: Aureole
     basis: PhaseBasis

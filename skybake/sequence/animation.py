@@ -63,7 +63,7 @@ def check_animation(path: Path, fps: float) -> None:
             f"{path}: frames per second must be from {_SLOWEST:g} to {kind.fastest:g}, got {fps:g}"
         )
     if find_spec("PIL") is None:
-        raise InputError(f"{path}: needs Pillow; try pip install 'skybake[animate]'")
+        raise InputError(f"{path}: needs Pillow; try pip install Pillow")
     check_target(path)
 
 

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Literal
+from dataclasses import replace
 
+from skybake.image.picture_settings import PictureSettings
 from skybake.sequence.dask import dask_pool
 from skybake.sequence.frame import PreviewSettings
+from skybake.sequence.pixel import common_pixel
 from skybake.sequence.plan import Plan
 from skybake.sequence.pool import Run, local_pool
 from skybake.sequence.products import Products
 from skybake.sequence.run import FrameEvent, SequenceResult, bake_frames, common_ev, prepare
-
-PreviewEv = float | Literal["auto", "adapt"]
+from skybake.sequence.sheet import TILE_WIDTH
 
 
 def bake_sequence(
@@ -21,8 +22,7 @@ def bake_sequence(
     *,
     only: Sequence[int] | None = None,
     products: Products | None = None,
-    view: str = "aces2",
-    preview_ev: PreviewEv = "auto",
+    picture: PictureSettings | None = None,
     skip_existing: bool = False,
     retries: int = 0,
     workers: int | None = None,
@@ -41,11 +41,9 @@ def bake_sequence(
     products : Products, optional
         What will be written about the sequence: their names are checked and their
         thumbnails made. Call its ``write`` with the result.
-    view : {"aces2", "aces1"}, optional
-        Display transform of all pictures.
-    preview_ev : float, "auto" or "adapt", optional
-        Exposure value of all pictures at ISO 100; auto suits the frame with the highest
-        sun, or the maps' own exposure where a curve sets it; adapt finds one for each.
+    picture : PictureSettings, optional
+        How all pictures show the frames. An exposure value of auto suits the frame with the
+        highest sun, or is the maps' own where a curve sets it.
     skip_existing : bool, optional
         Skip frames whose files are complete and of the same recipe.
     retries : int, optional
@@ -70,13 +68,12 @@ def bake_sequence(
         If a file could not be written, before anything is computed.
     """
     part = plan if only is None else plan.only(only)
-    check_sequence(part, products, view)
+    check_sequence(part, products)
     with frame_pool(
         plan,
         part,
         products=products,
-        view=view,
-        preview_ev=preview_ev,
+        picture=picture,
         skip_existing=skip_existing,
         workers=workers,
         dask=dask,
@@ -91,7 +88,7 @@ def bake_sequence(
         )
 
 
-def check_sequence(part: Plan, products: Products | None, view: str) -> None:
+def check_sequence(part: Plan, products: Products | None) -> None:
     """Raise the errors of all files that can be found before anything is computed.
 
     Raises
@@ -99,7 +96,7 @@ def check_sequence(part: Plan, products: Products | None, view: str) -> None:
     SkybakeError
         If a file cannot be written under its name, or would be written twice.
     """
-    part.check(view, () if products is None else products.paths)
+    part.check(() if products is None else products.paths)
     if products is not None:
         products.check()
 
@@ -110,8 +107,7 @@ def frame_pool(
     part: Plan,
     *,
     products: Products | None = None,
-    view: str = "aces2",
-    preview_ev: PreviewEv = "auto",
+    picture: PictureSettings | None = None,
     skip_existing: bool = False,
     workers: int | None = None,
     dask: str | None = None,
@@ -123,7 +119,7 @@ def frame_pool(
     ----------
     plan, part : Plan
         The whole sequence, which determines how frames are shown, and the part to bake.
-    products, view, preview_ev, skip_existing, workers, dask, notice
+    products, picture, skip_existing, workers, dask, notice
         As of `bake_sequence`.
 
     Raises
@@ -134,7 +130,7 @@ def frame_pool(
     if dask is None:
         # First, because finding an exposure needs the same tables, and would print no notice.
         prepare(part, notice)
-    previews = _preview_settings(plan, products, view, preview_ev)
+    previews = _preview_settings(plan, products, picture or PictureSettings())
     pool = (
         local_pool(part, previews, workers=workers, skip_existing=skip_existing)
         if dask is None
@@ -145,17 +141,16 @@ def frame_pool(
 
 
 def _preview_settings(
-    plan: Plan, products: Products | None, view: str, ev: PreviewEv
+    plan: Plan, products: Products | None, picture: PictureSettings
 ) -> PreviewSettings:
-    """How frames are shown; of a part of a sequence as all of it would be."""
+    """How frames are stored and shown; of a part of a sequence as all of it would be."""
     widths = () if products is None else products.thumbnail_widths
-    has_pictures = bool(widths) or any(frame.preview is not None for frame in plan.frames)
-    follows_map = ev == "auto" and plan.exposure_curve is not None
-    if ev == "auto" and has_pictures and not follows_map:
-        ev = common_ev(plan)
-    return PreviewSettings(
-        view=view,
-        ev=None if isinstance(ev, str) else ev,
-        follows_map=follows_map,
-        thumbnail_widths=widths,
-    )
+    is_common = picture.ev in {None, "auto"}
+    follows_map = is_common and plan.exposure_curve is not None
+    adapts_tiles = picture.ev is None and not follows_map
+    # The tiles of a sheet do not need the exposure of others.
+    shared = set(widths) - ({TILE_WIDTH} if adapts_tiles else set())
+    has_pictures = bool(shared) or any(frame.preview is not None for frame in plan.frames)
+    if is_common and has_pictures and not follows_map:
+        picture = replace(picture, ev=common_ev(plan, picture))
+    return PreviewSettings(picture, adapts_tiles, follows_map, widths, common_pixel(plan))

@@ -69,7 +69,7 @@ def dask_pool(
     try:
         from dask.distributed import Client, as_completed
     except ImportError as error:
-        raise InputError("dask: needs distributed; try pip install 'skybake[dask]'") from error
+        raise InputError("dask: needs distributed; try pip install distributed") from error
     # Its messages would mix with ours; what is lost becomes a frame's failure.
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
     try:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -12,19 +12,23 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.baking.paths import map_paths
+from skybake.baking.pixel_type import PixelType
 from skybake.baking.write import bake_scene
 from skybake.colour.exposure import ev_from_luminance
 from skybake.errors import InputError
 from skybake.formats.reader import read_attributes
 from skybake.formats.whole_files import WholeFiles, remove_leftovers
 from skybake.image.light import Light, attributes_from_light, light_from_attributes
-from skybake.image.picture import scene_ev, thumbnail
-from skybake.image.recipe import preview_texts, recipe_hash
+from skybake.image.picture import picture_ev, thumbnail
+from skybake.image.picture_settings import PictureSettings
+from skybake.image.picture_texts import preview_texts
+from skybake.image.recipe import recipe_hash
 from skybake.image.scene import Scene
 from skybake.pipeline import Pipeline
 from skybake.preset import Planet
 from skybake.sequence.digests import claim_of, file_sha256, verified_digests, write_digests
 from skybake.sequence.plan import Frame
+from skybake.sequence.sheet import TILE_WIDTH
 
 
 @dataclass(frozen=True)
@@ -33,20 +37,23 @@ class PreviewSettings:
 
     Attributes
     ----------
-    view : {"aces2", "aces1"}
-        Display transform.
-    ev : float or None
-        Exposure value of pictures; None chooses one for each frame by itself.
+    picture : PictureSettings
+        How all pictures show them. Its exposure value is a number, or adapt.
+    adapts_tiles : bool
+        Whether the tiles of a contact sheet are exposed each for itself nevertheless.
     follows_map : bool
-        Without `ev`, show maps as their own exposure has them.
+        Show maps as their own exposure has them, in place of that exposure.
     thumbnail_widths : tuple of int
         Of the thumbnails of each frame. [pixel]
+    pixel : {"half", "float"} or None
+        What the maps' pixel type auto stands for; None decides it by each frame.
     """
 
-    view: str = "aces2"
-    ev: float | None = None
+    picture: PictureSettings = field(default_factory=PictureSettings)
+    adapts_tiles: bool = False
     follows_map: bool = False
     thumbnail_widths: tuple[int, ...] = ()
+    pixel: PixelType | None = None
 
 
 @dataclass(frozen=True)
@@ -67,8 +74,12 @@ class FrameOutcome:
         Digests of these files.
     ev : float or None
         Exposure value of its picture, if that is known.
+    tile_ev : float or None
+        The same of its tile on a contact sheet.
     thumbnails : mapping of int to ndarray of uint8
-        Code values of sRGB, shape (width // 2, width, 3), by their widths.
+        Code values of sRGB, shape (row, width, 3), by their widths.
+    warnings : tuple of str
+        As of `skybake.baking.Baked`; none of a frame that was found.
     """
 
     number: int
@@ -77,7 +88,9 @@ class FrameOutcome:
     files: tuple[Path, ...]
     sha256: tuple[str, ...]
     ev: float | None
+    tile_ev: float | None
     thumbnails: Mapping[int, npt.NDArray[np.uint8]]
+    warnings: tuple[str, ...] = ()
 
 
 def finish_frame(
@@ -113,19 +126,21 @@ def finish_frame(
     is_new = found is None
     pipeline.workers.check()
     files = map_paths(frame.output, frame.settings)
+    warnings: tuple[str, ...] = ()
     if found is None:
         with WholeFiles() as whole:
             baked = bake_scene(
                 work.scene,
                 frame.output,
                 preview=frame.preview,
-                preview_ev=None if frame.preview is None else work.ev,
-                preview_view=previews.view,
+                picture=None if frame.preview is None else work.picture,
                 attributes=frame.attributes,
                 files=whole,
+                pixel=work.pixel,
             )
             digests = {path: file_sha256(whole.written(path)) for path in frame.files()}
             write_digests(whole, frame.output, work.claim, digests)
+        warnings = baked.warnings
         # As read from its files if they are found later.
         light = light_from_attributes(attributes_from_light(baked))
     else:
@@ -139,7 +154,9 @@ def finish_frame(
         files=files,
         sha256=tuple(digests[path] for path in files),
         ev=work.ev if frame.preview is not None else None,
+        tile_ev=work.tile_ev if TILE_WIDTH in previews.thumbnail_widths else None,
         thumbnails={width: work.thumbnail(width) for width in previews.thumbnail_widths},
+        warnings=warnings,
     )
 
 
@@ -162,16 +179,35 @@ class _Work:
 
     @cached_property
     def ev(self) -> float:
-        if self._previews.ev is not None:
-            return self._previews.ev
+        """Exposure value of the preview and of animated pictures."""
         if self._previews.follows_map:
             return ev_from_luminance(self._frame.settings.encoding.white_luminance)
-        return scene_ev(self.scene)
+        return picture_ev(self.scene, self._previews.picture)
+
+    @cached_property
+    def tile_ev(self) -> float:
+        """Exposure value of the tile on a contact sheet."""
+        if self._previews.adapts_tiles:
+            return picture_ev(self.scene, replace(self._previews.picture, ev="adapt"))
+        return self.ev
+
+    @property
+    def picture(self) -> PictureSettings:
+        """How the preview shows the map."""
+        return replace(self._previews.picture, ev=self.ev)
+
+    @property
+    def pixel(self) -> PixelType | None:
+        """What the frame's pixel type auto stands for, if that is decided."""
+        return self._previews.pixel if self._frame.settings.encoding.pixel == "auto" else None
 
     @cached_property
     def claim(self) -> str:
         """What the maps are to hold, see `claim_of`."""
-        return claim_of(recipe_hash(self._planet, self._frame.settings), self._frame.attributes)
+        decided = {} if self.pixel is None else {"pixel": self.pixel}
+        return claim_of(
+            recipe_hash(self._planet, self._frame.settings), {**self._frame.attributes, **decided}
+        )
 
     def found(self) -> tuple[Light, dict[Path, str]] | None:
         """Return light and digests of the files if they are as this frame's were written."""
@@ -180,14 +216,15 @@ class _Work:
         if digests is None:
             return None
         if frame.preview is not None:
-            texts = preview_texts(self._planet, settings, self.ev, self._previews.view)
+            texts = preview_texts(self._planet, settings, self.ev, self._previews.picture)
             if not texts.items() <= (_attributes(frame.preview) or {}).items():
                 return None
         light = _light_of_file(map_paths(frame.output, settings)[0])
         return None if light is None else (light, digests)
 
     def thumbnail(self, width: int) -> npt.NDArray[np.uint8]:
-        return thumbnail(self.scene, self.ev, self._previews.view, width)
+        ev = self.tile_ev if width == TILE_WIDTH else self.ev
+        return thumbnail(self.scene, ev, self._previews.picture, width)
 
 
 def _light_of_file(path: Path) -> Light | None:

@@ -37,10 +37,15 @@ class FrameRecord:
     altitude_m : float
         Of the observer above the ground. [m]
     sun_direction : tuple of 3 float
-        Unit vector toward the sun; +Y up, -Z north, +X east.
+        Unit vector toward the sun in the maps' axes; +Y up and, without a rotation, -Z north
+        and +X east.
     sun_colour : tuple of 3 float
         Of the sun's light at the observer, linear Rec. 709 of luminance 1; any if it
         gives none.
+    sun_distance_au : float
+        Of the sun. [au]
+    sun_angular_diameter_deg : float
+        Of its disc. [deg]
     sun_illuminance_lux, direct_illuminance_lux : float
         By the sun's disc, on a plane that faces it and on a horizontal one. [lx]
     sky_illuminance_lux : float
@@ -65,6 +70,8 @@ class FrameRecord:
     altitude_m: float
     sun_direction: tuple[float, float, float]
     sun_colour: tuple[float, float, float]
+    sun_distance_au: float
+    sun_angular_diameter_deg: float
     sun_illuminance_lux: float
     direct_illuminance_lux: float
     sky_illuminance_lux: float
@@ -83,14 +90,14 @@ class SequenceHeader:
     ----------
     preset : str
         Name of the world.
-    projection : {"equirect", "cubemap", "fisheye", "perspective"}
-        Kind of map.
+    projection : str
+        Kind of the maps, a key of `skybake.projection.PROJECTIONS`.
     colorspace : str
         A name of `skybake.colour.space.COLOUR_SPACES`.
     sun_disc : {"include", "exclude", "only"}
         Whether the maps hold the sun's disc, or nothing else.
     sun_angular_diameter_deg : float
-        Of the star's disc. [deg]
+        Of the star's disc in the first frame, or of the size that it is drawn in. [deg]
     recipe : mapping
         What the maps are baked from, fit for JSON.
     fps : float

@@ -101,13 +101,11 @@ class Plan:
             )
         return replace(self, frames=frames)
 
-    def check(self, view: str, others: Iterable[Path] = ()) -> None:
+    def check(self, others: Iterable[Path] = ()) -> None:
         """Raise the errors of all targets that can be found before anything is computed.
 
         Parameters
         ----------
-        view : {"aces2", "aces1"}
-            Display transform of previews.
         others : iterable of Path, optional
             What else is written.
 
@@ -117,7 +115,7 @@ class Plan:
             If a file cannot be written under its name, or would be written twice.
         """
         for frame in self.frames:
-            check_targets(frame.output, frame.settings, frame.preview, view)
+            check_targets(frame.output, frame.settings, frame.preview)
         taken: set[str] = set()
         for path in (*(path for frame in self.frames for path in frame.files()), *others):
             target = os.path.realpath(path)

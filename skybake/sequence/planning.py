@@ -12,6 +12,7 @@ from skybake.ephemeris.moment import Moment, TimeSpan
 from skybake.ephemeris.place import check_planet
 from skybake.errors import ArgumentError, InputError
 from skybake.image.settings import MapSettings
+from skybake.image.sun_distance import sun_distance as distance_of_sun
 from skybake.optics.changes import PresetChanges
 from skybake.preset import Planet, planet_name
 from skybake.sequence.exposure_curve import ExposureCurve
@@ -28,6 +29,7 @@ def plan_sequence(
     sun_elevation: float | Ramp | None = None,
     sun_azimuth: float | Ramp | None = None,
     altitude: float | Ramp | None = None,
+    sun_distance: float | str | None = None,
     changes: PresetChanges | Mapping[str, Any] | None = None,
     settings: MapSettings | None = None,
     exposure_curve: ExposureCurve | str | Path | None = None,
@@ -52,6 +54,9 @@ def plan_sequence(
         Where the sun is, if not by `times`; default as in `settings`. [rad]
     altitude : float or Ramp, optional
         Of the observer above the ground, at least 0; default as in `settings`. [km]
+    sun_distance : float, "date" or "mean", optional
+        Of the sun [au]; or as the times have it, which is the default with times; or as the
+        preset has it. By default one in `settings`, or one set in the preset, comes first.
     changes : PresetChanges or mapping, optional
         Changes of the preset, or values by its dotted keys; values may be a `Ramp`.
     settings : MapSettings, optional
@@ -75,6 +80,10 @@ def plan_sequence(
         for name, value in (("sun_elevation", sun_elevation), ("sun_azimuth", sun_azimuth)):
             if value is not None:
                 raise ArgumentError(f"{{{name}}}: cannot be combined with {{times}}")
+    if isinstance(times, TimeSpan) and times.altitude is None:
+        times = replace(times, altitude=_ends(altitude, settings.view.altitude))
+    if sun_distance is None:
+        sun_distance = settings.lighting.sun_distance
     numbers, moments = _numbers_and_moments(frames, times)
     if moments:
         check_planet(moments[0].place, planet_name(preset))
@@ -90,17 +99,19 @@ def plan_sequence(
         moment = moments[i] if moments else None
         path = maps.path(number)
         picture = preview_beside(path) if preview is True else None
+        world = min(i, len(planets) - 1)
         at_share = _settings_at(
             settings,
             _at(sun_elevation, share) if moment is None else moment.sun_elevation,
             _at(sun_azimuth, share) if moment is None else moment.sun_azimuth,
+            distance_of_sun(planets[world], moment, sun_distance),
             _at(altitude, share),
             None if exposure_curve is None else exposure_curve.at(number),
         )
         planned.append(
             Frame(
                 number=number,
-                world=min(i, len(planets) - 1),
+                world=world,
                 settings=at_share,
                 output=path,
                 preview=picture if pictures is None else pictures.path(number),
@@ -193,15 +204,27 @@ def _at(value: float | Ramp | None, share: float) -> float | None:
     return value.at(share) if isinstance(value, Ramp) else value
 
 
+def _ends(altitude: float | Ramp | None, default: float) -> tuple[float, float]:
+    """Return the altitude at the first frame and at the last."""
+    if isinstance(altitude, Ramp):
+        return altitude.first, altitude.last
+    return (default, default) if altitude is None else (altitude, altitude)
+
+
 def _settings_at(
     settings: MapSettings,
     sun_elevation: float | None,
     sun_azimuth: float | None,
+    sun_distance: float | None,
     altitude: float | None,
     ev: float | None,
 ) -> MapSettings:
-    """Return settings with what a frame has of its own; None leaves a value as it is."""
-    view, lighting, encoding = settings.view, settings.lighting, settings.encoding
+    """Return settings with what a frame has of its own; None leaves a value as it is.
+
+    A distance of None is the preset's.
+    """
+    view, encoding = settings.view, settings.encoding
+    lighting = replace(settings.lighting, sun_distance=sun_distance)
     if altitude is not None:
         view = replace(view, altitude=altitude)
     if sun_elevation is not None:

@@ -11,8 +11,12 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from skybake.constants import ASTRONOMICAL_UNIT
 from skybake.errors import OutputError
 from skybake.formats.targets import check_target
+from skybake.image.settings import Lighting
+from skybake.optics.spectrum import star_at
+from skybake.preset import Planet
 from skybake.sequence.animation import STILL_WIDTH, check_animation, write_animation
 from skybake.sequence.frame import FrameOutcome
 from skybake.sequence.frames import FramePattern
@@ -22,6 +26,7 @@ from skybake.sequence.run import SequenceResult
 from skybake.sequence.sheet import TILE_WIDTH, check_sheet, contact_sheet
 from skybake.sequence.thumbnails import Thumbnails
 from skybake.sequence.usd import check_usd, write_usd
+from skybake.units import degrees, metres
 
 
 @dataclass(frozen=True)
@@ -105,7 +110,8 @@ class Products:
         frames = {frame.number: frame for frame in self.plan.frames}
         for path in self.manifests:
             records = [
-                _record(frames[outcome.number], outcome, path.parent) for outcome in outcomes
+                _record(self.plan, frames[outcome.number], outcome, path.parent)
+                for outcome in outcomes
             ]
             suffix = path.suffix.lower()
             if suffix == ".csv":
@@ -120,7 +126,7 @@ class Products:
             write_animation(self.animation, stills, self.fps)
         if self.contact_sheet is not None:
             tiles = self._thumbnails.pictures(TILE_WIDTH, numbers)
-            labels = [_tile_label(frames[outcome.number]) for outcome in outcomes]
+            labels = [tile_label(frames[outcome.number], outcome) for outcome in outcomes]
             contact_sheet(self.contact_sheet, tiles, labels, title=self.plan.planets[0].title)
         return self.paths
 
@@ -143,7 +149,7 @@ def _header(products: Products) -> SequenceHeader:
         projection=settings.view.projection.name,
         colorspace=settings.encoding.colorspace,
         sun_disc=settings.lighting.sun_disc,
-        sun_angular_diameter_deg=math.degrees(2.0 * planet.star.angular_radius),
+        sun_angular_diameter_deg=_diameter(planet, settings.lighting),
         recipe={"map": _common(maps), "preset": _common(worlds), "command": list(products.command)},
         fps=products.fps,
     )
@@ -163,18 +169,22 @@ def _common(recipes: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     return common
 
 
-def _record(frame: Frame, outcome: FrameOutcome, folder: Path) -> FrameRecord:
+def _record(plan: Plan, frame: Frame, outcome: FrameOutcome, folder: Path) -> FrameRecord:
     settings, light = frame.settings, outcome.light
+    planet = plan.planet(frame)
+    star = star_at(planet.star, settings.lighting.sun_distance)
     time = frame.attributes.get("skybake:time")
     return FrameRecord(
         frame=frame.number,
         time=None if time is None else str(time),
         label=frame.label,
-        sun_elevation_deg=math.degrees(settings.lighting.sun_elevation),
-        sun_azimuth_deg=math.degrees(settings.lighting.sun_azimuth),
-        altitude_m=settings.view.altitude * 1e3,
+        sun_elevation_deg=degrees(settings.lighting.sun_elevation),
+        sun_azimuth_deg=degrees(settings.lighting.sun_azimuth),
+        altitude_m=metres(settings.view.altitude),
         sun_direction=light.sun_direction,
         sun_colour=light.sun_colour,
+        sun_distance_au=star.distance / ASTRONOMICAL_UNIT,
+        sun_angular_diameter_deg=_diameter(planet, settings.lighting),
         sun_illuminance_lux=light.direct_normal_illuminance,
         direct_illuminance_lux=light.direct_illuminance,
         sky_illuminance_lux=light.sky_illuminance,
@@ -186,13 +196,32 @@ def _record(frame: Frame, outcome: FrameOutcome, folder: Path) -> FrameRecord:
     )
 
 
+def _diameter(planet: Planet, lighting: Lighting) -> float:
+    """Of the disc as it is drawn. [deg]"""
+    star = star_at(planet.star, lighting.sun_distance)
+    return math.degrees(lighting.sun_size or 2.0 * star.angular_radius)
+
+
 def _seen_from(folder: Path, path: Path) -> str:
     return Path(os.path.relpath(path, folder)).as_posix()
 
 
-def _tile_label(frame: Frame) -> str:
+def tile_label(frame: Frame, outcome: FrameOutcome) -> str:
+    """Time and sun of a frame, and below them the exposure of its tile and the light outside.
+
+    That is the illuminance of a horizontal plane by sun and sky.
+    """
     sun = f"sun {math.degrees(frame.settings.lighting.sun_elevation):.1f} deg"
     time = (frame.label or str(frame.number)).removesuffix(":00")
     if frame.label and "skybake:time" in frame.attributes:
         time = f"{datetime.fromisoformat(frame.label):%Y-%m-%d %H:%M}"
-    return f"{time}  {sun}"
+    lux = outcome.light.direct_illuminance + outcome.light.sky_illuminance
+    return f"{time}  {sun}\nEV {outcome.tile_ev:.1f}  {_rounded(lux)} lx"
+
+
+def _rounded(lux: float) -> str:
+    """Write an illuminance with three digits, and in thousands with a space between."""
+    if not 1e-3 <= lux < 1e6:
+        return f"{lux:.2g}"
+    rounded = float(f"{lux:.3g}")
+    return f"{rounded:,.0f}".replace(",", " ") if rounded >= 100.0 else f"{rounded:g}"

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from skybake.errors import SkybakeError
-from skybake.image.picture import scene_ev
+from skybake.image.picture import picture_ev
+from skybake.image.picture_settings import PictureSettings
 from skybake.image.scene import Scene
 from skybake.sequence.frame import FrameOutcome
 from skybake.sequence.plan import Frame, Plan
@@ -130,10 +131,10 @@ def _skies(plan: Plan) -> Iterator[Sky]:
         yield Sky(planet, lighting.sun_elevation, method=lighting.method)
 
 
-def common_ev(plan: Plan) -> float:
-    """Exposure value for all pictures of a sequence: where the sun is highest, it is legible."""
+def common_ev(plan: Plan, picture: PictureSettings) -> float:
+    """Exposure value for all pictures of a sequence: that of the frame with the highest sun."""
     frame = plan.highest_sun()
-    return scene_ev(Scene(plan.planet(frame), frame.settings))
+    return picture_ev(Scene(plan.planet(frame), frame.settings), picture)
 
 
 def _message(error: Exception) -> str:

@@ -60,7 +60,8 @@ def contact_sheet(
     thumbnails : sequence of ndarray of uint8, shape (row, column, 3)
         At least one, code values of sRGB, all of one shape.
     labels : sequence of str
-        One for each, below its tile; letters become smaller where a label is wider than its tile.
+        One for each, below its tile, of equally many lines; letters become smaller where a line is
+        wider than its tile.
     title : str
         One line.
 
@@ -75,17 +76,18 @@ def contact_sheet(
     height, width = thumbnails[0].shape[:2]
     columns = _columns(len(thumbnails), width / height)
     gap = max(2, width // 32)
-    size = _letters(labels, width)
+    size = _letters((line for label in labels for line in label.split("\n")), width)
     rows = math.ceil(len(thumbnails) / columns)
     total = columns * width + (columns - 1) * gap
     heading = _strip(title, total, _letters([title], total, 1.5))
-    tile_height = height + _strip_height(size)
+    lines = 1 + labels[0].count("\n")
+    tile_height = height + lines * _strip_height(size)
 
     def bands() -> Iterator[Picture]:
         yield _margins(heading, gap, above=gap)
         for row in range(rows):
             here = range(row * columns, min((row + 1) * columns, len(thumbnails)))
-            tiles = [np.vstack([thumbnails[i], _strip(labels[i], width, size)]) for i in here]
+            tiles = [_tile(thumbnails[i], labels[i], size) for i in here]
             tiles += [np.full_like(tiles[0], BACKGROUND)] * (columns - len(tiles))
             yield _margins(_joined(tiles, gap), gap, above=gap if row else 0)
         yield np.full((gap, total + 2 * gap, 3), BACKGROUND, np.uint8)
@@ -108,6 +110,12 @@ def _letters(texts: Iterable[str], width: int, larger: float = 1.0) -> int:
     wanted = round(min(max(width / 14.0, _SMALLEST_LETTERS), _LARGEST_LETTERS) * larger)
     widest = max(text_width(text, wanted) for text in texts)
     return max(_SMALLEST_LETTERS, min(wanted, int(wanted * width / max(widest, 1))))
+
+
+def _tile(thumbnail: Picture, label: str, size: int) -> Picture:
+    """Return a thumbnail with the lines of its label below."""
+    width = thumbnail.shape[1]
+    return np.vstack([thumbnail, *(_strip(line, width, size) for line in label.split("\n"))])
 
 
 def _strip_height(size: int) -> int:

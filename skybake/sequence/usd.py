@@ -134,7 +134,7 @@ def _sun(header: SequenceHeader, rows: Sequence[FrameRecord]) -> Iterator[str]:
         yield f"        doc = {_quoted(_SUN_IS_IN_MAPS)}"
         yield "    )"
     yield "    {"
-    yield f"        float inputs:angle = {header.sun_angular_diameter_deg:.9g}"
+    yield from _angle(rows)
     yield "        color3f inputs:color ("
     yield '            colorSpace = "lin_rec709_scene"'
     yield "        )"
@@ -147,7 +147,7 @@ def _sun(header: SequenceHeader, rows: Sequence[FrameRecord]) -> Iterator[str]:
         lambda row: f"{row.sun_illuminance_lux / row.white_luminance_cd_m2:.9g}",
     )
     yield "        bool inputs:normalize = 1"
-    bearing = dict(zip((row.frame for row in rows), _steady_bearings(rows), strict=True))
+    bearing = dict(zip((row.frame for row in rows), _steady_bearings(header, rows), strict=True))
     # The light comes from +Z of its own axes: tilted up, then turned to the bearing.
     yield from _samples(
         "        float3 xformOp:rotateXYZ",
@@ -156,6 +156,17 @@ def _sun(header: SequenceHeader, rows: Sequence[FrameRecord]) -> Iterator[str]:
     )
     yield '        uniform token[] xformOpOrder = ["xformOp:rotateXYZ"]'
     yield "    }"
+
+
+def _angle(rows: Sequence[FrameRecord]) -> Iterator[str]:
+    """Size of the sun's disc, which changes where its distance follows the date."""
+    angles = [f"{row.sun_angular_diameter_deg:.9g}" for row in rows]
+    if len(set(angles)) == 1:
+        yield f"        float inputs:angle = {angles[0]}"
+    else:
+        yield from _samples(
+            "        float inputs:angle", rows, lambda row: f"{row.sun_angular_diameter_deg:.9g}"
+        )
 
 
 def _samples(
@@ -172,12 +183,13 @@ def _colour_of_light(row: FrameRecord) -> tuple[float, float, float]:
     return row.sun_colour if row.sun_illuminance_lux > 0.0 else (1.0, 1.0, 1.0)
 
 
-def _steady_bearings(rows: Sequence[FrameRecord]) -> Iterator[float]:
-    """Bearings of the sun without a jump at north, which would be interpolated. [deg]"""
+def _steady_bearings(header: SequenceHeader, rows: Sequence[FrameRecord]) -> Iterator[float]:
+    """Bearings of the sun on the maps, without a jump at north that would be interpolated. [deg]"""
+    rotation = header.recipe.get("map", {}).get("rotate_deg", 0.0)
     bearing = rows[0].sun_azimuth_deg
     for row in rows:
         bearing += math.remainder(row.sun_azimuth_deg - bearing, 360.0)
-        yield bearing
+        yield bearing - rotation
 
 
 def _triple(x: float, y: float, z: float) -> str:

@@ -11,10 +11,11 @@ import numpy as np
 from skybake.errors import InputError
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.medium import Array, build_medium
-from skybake.optics.spectrum import limb_darkening, star_irradiance
-from skybake.preset import Planet, load_preset
+from skybake.optics.spectrum import limb_darkening, star_at, star_irradiance
+from skybake.preset import Planet, Star, load_preset
 from skybake.scattering.atmosphere import is_stored, load_atmosphere
 from skybake.scattering.tables import Atmosphere
+from skybake.sky.closure import check_closure
 from skybake.sky.observer import Observer
 from skybake.sky.single import SingleSkylight
 from skybake.sky.skylight import Skylight
@@ -38,6 +39,8 @@ class Sky:
         Of the observer above the ground, at least 0. [km]
     sun_azimuth : float, optional
         Compass bearing of the sun, 0 = north, clockwise; default south. [rad]
+    sun_distance : float, optional
+        Of the sun; default the preset's. [au]
     wavelengths : array_like, optional
         Ascending; default 16 from 380 to 720 nm, or the preset's own. [nm]
     method : {"full", "hillaire", "march"}, optional
@@ -61,6 +64,7 @@ class Sky:
         altitude: float = 0.0,
         *,
         sun_azimuth: float = math.pi,
+        sun_distance: float | None = None,
         wavelengths: Array | None = None,
         method: str = "full",
         workers: Workers = ALL_CPUS,
@@ -75,15 +79,21 @@ class Sky:
         self.wavelengths = np.asarray(wavelengths, dtype=float)
         self.sun_elevation = sun_elevation
         self.sun_azimuth = sun_azimuth
+        self.sun_distance = sun_distance
         self.altitude = altitude
         self.method = method
         self.workers = workers
         self.medium = build_medium(self.planet, self.wavelengths)
 
     @cached_property
+    def star(self) -> Star:
+        """The star, as far away as it is."""
+        return star_at(self.planet.star, self.sun_distance)
+
+    @cached_property
     def irradiance(self) -> Array:
         """The star's irradiance above the atmosphere, shape (wavelength,). [W m⁻² nm⁻¹]"""
-        return star_irradiance(self.planet.star, self.wavelengths)
+        return star_irradiance(self.star, self.wavelengths)
 
     @cached_property
     def source(self) -> Source:
@@ -92,8 +102,8 @@ class Sky:
             azimuth=self.sun_azimuth,
             elevation=self.sun_elevation,
             irradiance=self.irradiance,
-            angular_radius=self.planet.star.angular_radius,
-            limb_darkening=limb_darkening(self.planet.star, self.wavelengths),
+            angular_radius=self.star.angular_radius,
+            limb_darkening=limb_darkening(self.star, self.wavelengths),
         )
 
     @property
@@ -144,5 +154,13 @@ class Sky:
 
     @cached_property
     def atmosphere(self) -> Atmosphere:
-        """The tables of the atmosphere, which depend neither on the observer nor on the sun."""
+        """The tables of the atmosphere, which depend neither on the observer nor on the sun.
+
+        Raises
+        ------
+        UnsolvableError
+            If the atmosphere is beyond what the method can do.
+        """
+        if self.method == "hillaire":
+            check_closure(self.medium)
         return load_atmosphere(self.medium, self.table_method, self.workers)

@@ -169,7 +169,12 @@ class Skylight:
         """
         medium = self.atmosphere.medium
         geometry = table_geometry(
-            self.radius, medium.r_bottom, medium.r_top, source.zenith, finely=finely
+            self.radius,
+            medium.r_bottom,
+            medium.r_top,
+            source.zenith,
+            has_aureole=self.atmosphere.aureole.source.shape[2] > 0,
+            finely=finely,
         )
         return SpectralTable(
             geometry, self._light(source, geometry.mu.ravel(), geometry.nu.ravel())

@@ -47,7 +47,13 @@ class TableGeometry:
 
 
 def table_geometry(
-    r: float, r_bottom: float, r_top: float, source_zenith: float, *, finely: bool = False
+    r: float,
+    r_bottom: float,
+    r_top: float,
+    source_zenith: float,
+    *,
+    has_aureole: bool = False,
+    finely: bool = False,
 ) -> TableGeometry:
     """Choose the nodes of a table.
 
@@ -57,13 +63,19 @@ def table_geometry(
         Radii of the observer, the ground and the top of the atmosphere. [km]
     source_zenith : float
         Zenith angle of the source. [rad]
+    has_aureole : bool, optional
+        Whether the light around the source is finer than the diffuse field.
     finely : bool, optional
         Trace rays at all azimuths of the table, also where few determine the others.
     """
     first, horizon = horizon_angles(r, r_bottom, r_top)
     azimuths = AZIMUTHS_FROM_SPACE
     if first == 0.0:
-        azimuths = AZIMUTHS if finely else ray_azimuths(math.pi / 2.0 - source_zenith, horizon)
+        azimuths = (
+            AZIMUTHS
+            if finely
+            else ray_azimuths(math.pi / 2.0 - source_zenith, horizon, has_aureole=has_aureole)
+        )
     zenith, phi = table_directions(source_zenith, first, horizon, azimuths)
     theta = np.broadcast_to(zenith[:, :, None], phi.shape)
     mu = np.cos(theta)

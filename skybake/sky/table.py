@@ -30,6 +30,7 @@ RAY_AZIMUTHS = ORDER + 3
 """Azimuths of rays where the observer sees no twilight: the diffuse field has orders m up to
 `ORDER`, and what the sun alone lights is smoother."""
 
+RAY_AZIMUTHS_AUREOLE = 49
 RAY_AZIMUTHS_TWILIGHT = 49
 TWILIGHT_ELEVATION = math.radians(2.0)
 HIGH_DIP = math.radians(4.0)
@@ -78,11 +79,11 @@ def horizon_angles(r: float, r_bottom: float, r_top: float) -> tuple[float, floa
     return first, math.pi - math.asin(min(1.0, r_bottom / r))
 
 
-def ray_azimuths(sun_elevation: float, zenith_horizon: float) -> int:
+def ray_azimuths(sun_elevation: float, zenith_horizon: float, *, has_aureole: bool = False) -> int:
     """How many azimuths of rays determine those of a table inside the atmosphere."""
     dip = zenith_horizon - math.pi / 2.0
     if sun_elevation > TWILIGHT_ELEVATION + dip:
-        return RAY_AZIMUTHS
+        return RAY_AZIMUTHS_AUREOLE if has_aureole else RAY_AZIMUTHS
     return RAY_AZIMUTHS_TWILIGHT if dip < HIGH_DIP else AZIMUTHS
 
 

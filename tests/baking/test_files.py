@@ -8,6 +8,7 @@ import pytest
 
 from skybake.baking import bake
 from skybake.errors import OutputError
+from skybake.formats.reader import read_attributes
 from skybake.image.settings import map_settings
 from skybake.jit import workers
 from skybake.projection.cubemap import FACES
@@ -148,7 +149,7 @@ def test_header_tells_sun_light_and_recipe(tmp_path):
     assert spec.getattribute("skybake:skyIlluminance") == pytest.approx(baked.sky_illuminance)
     assert spec.getattribute("skybake:directIlluminance") == pytest.approx(baked.direct_illuminance)
     assert spec.getattribute("skybake:preset") == "mars"
-    recipe = json.loads(spec.getattribute("skybake:recipe"))
+    recipe = json.loads(read_attributes(baked.files[0])["skybake:recipe"])
     assert recipe["map"] == settings.recipe()
     assert recipe["map"]["sun_elevation_deg"] == pytest.approx(30.0)
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from skybake.projection import cubemap
-from tests.baking.maps import bake_map, pixels
+from tests.baking.maps import bake_map, luminance, pixels
 from tests.formats.maps import program
 
 EDGE = 64
@@ -91,6 +91,21 @@ def test_exrenvmap_makes_our_equirect_map_of_our_cube(tmp_path):
         assert typical_and_worst(wrong, expected)[1] > 2.0 * most
 
 
+@pytest.mark.parametrize("elevation", [90.0, 88.0, 50.0])
+def test_exrenvmap_finds_all_of_a_sun_where_rows_are_at_the_poles(tmp_path, elevation):
+    """It takes the first row for the zenith, and a finer cube for what is between rows."""
+    values = {"sun_disc": "only", "pixel": "float", "size": 128, "method": "hillaire"}
+    share = {}
+    for rows in ("poles", "centres"):
+        baked, settings = bake_map(tmp_path / "a.exr", elevation=elevation, rows=rows, **values)
+        run(program("exrenvmap"), "-c", "-w", 512, tmp_path / "a.exr", tmp_path / "cube.exr")
+        light = luminance(tmp_path / "cube.exr", settings).reshape(6, -1)
+        flux = (light @ cubemap.solid_angles(512).ravel()).sum()
+        share[rows] = flux / baked.direct_normal_illuminance
+    assert share["poles"] == pytest.approx(1.0, abs=0.02)
+    assert elevation < 89.0 or share["centres"] < 0.6
+
+
 @pytest.mark.parametrize("suffix", [".exr", ".hdr"])
 def test_cmgen_takes_our_faces_from_our_equirect_map(tmp_path, suffix):
     bake_map(tmp_path / f"flat{suffix}", size=512, **SKY)
@@ -102,10 +117,11 @@ def test_cmgen_takes_our_faces_from_our_equirect_map(tmp_path, suffix):
         assert_same_face(theirs, pixels(file), 0.03, 0.15, face)
 
 
-def test_cmgen_reads_our_cross(tmp_path):
-    """Its own crosses, too, have +Z in the middle and -Z at the right."""
+@pytest.mark.parametrize("layout", ["cross", "vertical-cross"])
+def test_cmgen_reads_our_crosses(tmp_path, layout):
+    """Its own, too, have +Z in the middle, and -Z at the right or upside down at the bottom."""
     baked, _ = bake_map(tmp_path / "ours.exr", projection="cubemap", size=EDGE, **SKY)
-    bake_map(tmp_path / "cross.exr", projection="cubemap", size=EDGE, layout="cross", **SKY)
+    bake_map(tmp_path / "cross.exr", projection="cubemap", size=EDGE, layout=layout, **SKY)
     extract = [f"--extract={tmp_path / 'theirs'}", "--no-mirror", "-f", "exr", "-s", EDGE]
     run(program("cmgen"), "-q", *extract, tmp_path / "cross.exr")
     for face, file in zip(cubemap.FACES, baked.files, strict=True):

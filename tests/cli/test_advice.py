@@ -10,5 +10,5 @@ def test_an_atmosphere_too_thick_to_be_solved_names_the_methods_that_are_not(tmp
     assert (status, output) == (1, "")
     (line,) = errors.splitlines()
     assert line.startswith("skybake: multiple scattering: optical depth of the atmosphere ")
-    assert line.endswith("; use probe --method reference, or --method hillaire")
+    assert line.endswith("; use probe --method reference")
     assert list(tmp_path.iterdir()) == []

@@ -15,7 +15,10 @@ USAGE = """
 --sun inf                         => '--sun': must be an angle such as 5deg
 --sun 5km                         => '--sun': must be an angle such as 5deg
 --sun-azimuth south               => '--sun-azimuth': must be an angle such as 5deg
---altitude -1                     => '--altitude': must be at least 0m, which is the ground, got -1
+--altitude -1m                    => '--altitude': must be at least 0m, which is the ground, got -1
+--altitude 400                    => '--altitude': needs a unit, such as 400m or 400km (units: m, km
+--altitude 400M                   => '--altitude': must be a length such as 2km
+-o sky.png                        => suffix must be .exr or .hdr, got '.png'; a picture to look at
 --altitude 2deg                   => '--altitude': must be a length such as 2km
 --altitude 1e400m                 => '--altitude': must be a length such as 2km
 --size 0x0                        => --size: must be from 4 to 65536, got 0
@@ -32,6 +35,21 @@ USAGE = """
 --look 180,0                      => --look: needs --projection fisheye or perspective
 --projection fisheye --fov 300deg => --fov: must be greater than 0deg and at most 270deg
 --cube-layout cross               => --cube-layout: needs --projection cubemap
+--cube-layout star                => '--cube-layout': 'star' is not one of 'faces', 'cross',
+--projection angular --size 64x32 => --size: an angular map is square, got 64x32
+--projection octahedral --size 1  => --size: must be from 2 to 65536, got 1
+--equirect-rows edges             => '--equirect-rows': 'edges' is not one of 'centres', 'poles'.
+--projection angular --equirect-rows poles => --equirect-rows: needs --projection equirect
+--projection angular --look 0,0   => --look: needs --projection fisheye or perspective
+--rotate north                    => '--rotate': must be an angle such as 5deg
+--projection fisheye --rotate 9   => --rotate: cannot be combined with --projection fisheye, which
+--sun-size 0deg                   => '--sun-size': must be greater than 0deg and at most 20deg, got
+--sun-size 21                     => '--sun-size': must be greater than 0deg and at most 20deg, got
+--sun-strength 0                  => '--sun-strength': must be a number greater than 0 and at most
+--sun-strength nan                => '--sun-strength': must be a number greater than 0 and at most
+--sun-soft --sun-disc exclude     => --sun-soft: cannot be combined with --sun-disc exclude
+--sun-size 2 --sun-disc exclude   => --sun-size: cannot be combined with --sun-disc exclude
+--omit-exposure                   => --omit-exposure: needs an .hdr output
 --colorspace srgb                 => '--colorspace': 'srgb' is not one of 'lin_rec709', 'acescg',
 --units lux                       => '--units': 'lux' is not one of 'ev15', 'nits'.
 --units nits --ev 3               => --units: cannot be combined with --ev
@@ -51,7 +69,18 @@ USAGE = """
 --preview --preview-ev bright     => '--preview-ev': must be auto or a number from -30 to 40
 --preview-ev 3                    => --preview-ev: needs --preview
 --view aces1                      => --view: needs --preview
---preview --view film             => '--view': 'film' is not one of 'aces2', 'aces1'.
+--preview --view film             => '--view': 'film' is not one of 'aces1', 'aces2'.
+--white-balance auto              => --white-balance: needs --preview
+--preview --white-balance warm    => '--white-balance': must be auto, none or a temperature from 10
+--preview --white-balance 900K    => '--white-balance': must be auto, none or a temperature from 10
+--preview --white-balance nan     => '--white-balance': must be auto, none or a temperature from 10
+--shot 180,0,50                   => --shot: needs --preview
+--preview --shot 180,0            => '--shot': must be AZIMUTH,ELEVATION,FOV such as 180,10,50, got
+--preview --shot 180,0,50,1       => '--shot': must be AZIMUTH,ELEVATION,FOV such as 180,10,50, got
+--preview --shot 180,95,50        => '--shot': must be from -90deg to 90deg, got 95
+--preview --shot 180,0,0          => '--shot': must be greater than 0deg, got 0
+--preview --shot 180,0,171        => '--shot': must have a field of view of at most 170deg, got 171
+--preview --shot 180,0,50m        => '--shot': must be an angle such as 5deg
 --colour acescg                   => No such option
 spare                             => Got unexpected extra argument (spare)
 --sun                             => Option '--sun' requires an argument.
@@ -92,6 +121,8 @@ def test_a_cube_in_one_exr_is_no_radiance_picture(tmp_path, monkeypatch):
         (("preview",), "Missing argument 'IN'."),
         (("preview", "a.exr", "-o", "a.jpg"), "a.jpg: suffix must be .png, got '.jpg'"),
         (("preview", "a.exr", "--ev", "x"), "must be auto or a number from -30 to 40, got 'x'"),
+        (("preview", "a.exr", "--shot", "1,2"), "must be AZIMUTH,ELEVATION,FOV such as 180,10,50"),
+        (("preview", "a.exr", "--white-balance", "x"), "must be auto, none or a temperature from"),
     ],
 )
 def test_wrong_usage_of_the_other_commands_is_exit_2(arguments, message):

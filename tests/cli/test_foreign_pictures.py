@@ -88,7 +88,7 @@ def test_attributes_that_are_no_text_do_not_matter(folder):
 def fault_of(path):
     """What is said of a picture that cannot be shown; nothing of one that can."""
     try:
-        preview_file(path, path.with_suffix(".png"), ev=12.0)
+        preview_file(path, path.with_suffix(".png"))
     except SkybakeError as error:
         return str(error)
     return ""

@@ -18,6 +18,7 @@ from skybake.image import settings
 from skybake.preset import preset_names
 from skybake.projection import PROJECTIONS
 from skybake.projection.cubemap import LAYOUTS
+from skybake.projection.equirect import ROWS
 from skybake.sky.sky import METHODS
 from tests.cli.runs import invoke, run
 
@@ -85,11 +86,12 @@ def test_a_command_loads_no_other(tmp_path):
 
 def test_choices_are_those_of_the_engine():
     assert tuple(PROJECTIONS) == values.PROJECTIONS
-    fields = {"cube_layout": "layout", "fov": "fov", "look": "azimuth"}
+    fields = {"equirect_rows": "rows", "cube_layout": "layout", "fov": "fov", "look": "azimuth"}
     for option, having in values.PROJECTIONS_WITH.items():
         names = (kind.name for kind in PROJECTIONS.values() if hasattr(kind, fields[option]))
         assert tuple(names) == having
     assert values.CUBE_LAYOUTS == LAYOUTS
+    assert values.EQUIRECT_ROWS == ROWS
     assert tuple(COLOUR_SPACES) == values.COLOUR_SPACES
     assert values.UNITS == UNITS
     assert values.PIXELS == settings.PIXELS
@@ -106,10 +108,12 @@ def test_defaults_are_those_of_the_engine():
     engine["projection"] = made.view.projection.name
     shared = given.keys() & engine.keys()
     assert {key: given[key] for key in shared} == {key: engine[key] for key in shared}
-    assert len(shared) == 8
+    assert len(shared) == 10
     shown = {p.name: p.show_default for p in render.params if isinstance(p.show_default, str)}
     for key in engine.keys() & shown.keys():
-        assert shown[key] == engine[key]
+        value = engine[key]
+        if value is not None:
+            assert shown[key] == (f"{value:g}" if isinstance(value, float) else value)
 
 
 @pytest.mark.parametrize(("path", "command"), COMMANDS)

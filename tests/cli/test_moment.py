@@ -1,9 +1,12 @@
 """Suns by place and time."""
 
+import csv
 import json
 import math
+import re
 from datetime import UTC, datetime
 from pathlib import Path
+from zoneinfo import ZoneInfo
 
 import numpy as np
 import pytest
@@ -77,20 +80,105 @@ def test_the_noon_sun_is_in_the_middle_of_the_north_and_on_the_seam_of_the_south
 def test_a_polar_day_has_a_sun_at_midnight():
     told, *_ = render(
         *("--lat", "69.6492", "--lon", "18.9553", "--tz", "Europe/Oslo"),
-        *("--date", "2026-06-21", "--time", "midnight"),
+        *("--date", "2026-06-21", "--time", "midnight", "--no-refraction"),
     )
     assert told["sun_direction"][1] == pytest.approx(math.sin(math.radians(3.09)), abs=1e-3)
 
 
-def test_refraction_lifts_the_sun_and_is_told():
+def test_an_event_is_lifted_by_refraction_unless_told_otherwise():
     arguments = (*PARIS, "--date", "2026-03-20", "--tz", "Europe/Paris", "--time", "sunset")
-    below, *_ = render(*arguments)
-    lifted, attributes, _ = render(*arguments, "--refraction")
+    below, *_ = render(*arguments, "--no-refraction")
+    lifted, attributes, _ = render(*arguments)
     geometric = math.asin(below["sun_direction"][1])
-    assert math.degrees(geometric) == pytest.approx(-50 / 60, abs=0.003)
-    lift = refraction(geometric)
-    assert math.asin(lifted["sun_direction"][1]) == pytest.approx(geometric + lift, abs=1e-12)
-    assert attributes["skybake:refraction"] == pytest.approx(math.degrees(lift), rel=1e-6)
+    assert math.degrees(geometric) == pytest.approx(-16 / 60, abs=0.003)
+    lift = refraction(math.radians(-50 / 60))
+    seen = math.asin(lifted["sun_direction"][1])
+    assert seen == pytest.approx(math.radians(-50 / 60) + lift, abs=4e-5)
+    assert attributes["skybake:refraction"] == pytest.approx(math.degrees(lift), rel=1e-3)
+
+
+def test_the_advice_on_an_ambiguous_time_can_be_followed():
+    arguments = (*PARIS, "--tz", "Europe/Paris", "--time")
+    told = invoke("render", *SMALL, *arguments, "2026-10-25T02:30").stderr
+    for advised in re.findall(r"2026-10-25T02:30:00\+0\d:00", told):
+        followed, *_ = render(*arguments, advised)
+        assert followed["time"].startswith("2026-10-25T0")
+    assert followed["time"] == "2026-10-25T01:30:00Z"
+
+
+@pytest.mark.parametrize("word", ["yesterday", "today", "Tomorrow"])
+def test_a_date_may_be_a_word_by_the_local_clock(word):
+    """At this longitude the date is another than in UTC for most of the day."""
+    zone, place = "Pacific/Kiritimati", ("--lat", "1.87", "--lon", "-157.4")
+    before = datetime.now(ZoneInfo(zone)).date()
+    told, *_ = render(*place, "--tz", zone, "--date", word, "--time", "noon")
+    noon = datetime.fromisoformat(told["time"]).astimezone(ZoneInfo(zone)).date()
+    days = (noon - before).days - ("yesterday", "today", "tomorrow").index(word.lower()) + 1
+    # Midnight may pass meanwhile.
+    assert days in {0, 1}
+
+
+LIGHT = ("--sun-disc", "only")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "distance"),
+    [
+        ((*PARIS, "--time", "2026-01-03T12:00Z"), 0.98330),
+        ((*PARIS, "--time", "2026-07-06T12:00Z"), 1.01664),
+        ((*PARIS, "--time", "2026-07-06T12:00Z", "--sun-distance", "mean"), 1.0),
+        ((*PARIS, "--time", "2026-07-06T12:00Z", "--sun-distance", "0.9au"), 0.9),
+        ((*PARIS, "--time", "2026-07-06T12:00Z", "--set", "star.distance_au=1.2"), 1.2),
+        (
+            (
+                *(*PARIS, "--time", "2026-07-06T12:00Z"),
+                *("--set", "star.distance_au=2", "--sun-distance", "date"),
+            ),
+            2.03329,
+        ),
+        ((*MARS, "--site", "gale", "--ls", "71", "--time", "12:00"), 1.66599),
+        ((*MARS, "--site", "gale", "--ls", "251", "--time", "12:00"), 1.38137),
+        ((*MARS, "--sun", "90", "--sun-distance", "1.5"), 1.5),
+        (("--sun", "30"), 1.0),
+    ],
+)
+def test_light_and_disc_are_those_of_the_suns_distance(arguments, distance):
+    """Without air, on a plane that faces the sun: 133.1 klx at 1 au."""
+    airless = [f"--set={name}=none" for name in ("air", "ozone", "aerosol")]
+    if "mars" in arguments:
+        airless = ["--set=gas=none", "--set=dust=none"]
+    told, attributes, _ = render(*arguments, *airless, *LIGHT)
+    assert told["sun_distance_au"] == pytest.approx(distance, abs=1e-5)
+    assert told["direct_normal_illuminance_lux"] == pytest.approx(133_140 / distance**2, rel=1e-3)
+    diameter = math.degrees(2.0 * math.asin(695_700.0 / (distance * 149_597_870.7)))
+    assert told["sun_angular_diameter_deg"] == pytest.approx(diameter, rel=1e-4)
+    recipe = json.loads(attributes["skybake:recipe"])
+    stated = recipe["map"].get("sun_distance_au", recipe["preset"]["star"]["distance_au"])
+    assert stated == told["sun_distance_au"]
+
+
+def test_a_probe_has_the_sun_of_its_date():
+    figures = {}
+    for arguments in (("--sun-distance", "mean"), ()):
+        output = invoke(
+            *("probe", *PARIS, "--time", "2026-01-03T12:00Z", "--illuminance", *arguments),
+            *("--wavelengths", "550", "--method", "hillaire"),
+        ).stdout
+        row = next(csv.DictReader(output.splitlines()))
+        for name in ("radiance_550nm", "luminance_cd_m2", "sky_illuminance_lux"):
+            figures.setdefault(name, []).append(float(row[name]))
+    for mean, near in figures.values():
+        assert near / mean == pytest.approx(0.98330**-2, rel=1e-4)
+
+
+def test_another_date_solves_no_new_atmosphere(monkeypatch):
+    render(*PARIS, "--time", "2026-01-03T12:00Z", "--method", "hillaire")
+
+    def never(*_):
+        raise AssertionError
+
+    monkeypatch.setattr("skybake.scattering.atmosphere.build_atmosphere", never)
+    render(*PARIS, "--time", "2026-07-03T12:00Z", "--method", "hillaire")
 
 
 def test_mars_has_the_sun_of_its_own_time():
@@ -133,21 +221,27 @@ P --time 2026-06-21T04:00 => --time: needs an offset, as 2026-06-21T04:00Z or
 P --time 2026-03-29T02:30 --tz Europe/Paris => --time: does not exist in Europe/Paris, where
 P --time 2026-10-25T02:30 --tz Europe/Paris => --time: is ambiguous in Europe/Paris, write
 P --time 2026-06-21T04:00 --tz Europe/Pari => --tz: unknown time zone 'Europe/Pari'; nearest:
-P --time 2026-06-21T04:00Z --tz Europe/Paris => --tz: needs a time without an offset of its own
+P --time 2026-06-21T04:00 --tz Springfield => --tz: unknown time zone 'Springfield'; must be such as
+P --time sunset --date today --tz Springfield => --tz: unknown time zone 'Springfield'; must
+P --time sunset --date 2011-12-30 --tz Pacific/Apia => --date: does not exist in Pacific/Apia, where
+P --time sunset --date 2026-06-21 --sun-distance 0 => '--sun-distance': must be mean, date or a
+--sun-distance date => --sun-distance: date needs --time
+--sun-distance far => '--sun-distance': must be mean, date or a number of au from 0.001 to 1000
 P --time 2026-06-21T04:00Z --date 2026-06-21 => --date: needs --time sunset or another event
 P --time sunset => --time sunset: needs --date
 P --time sunzet --date 2026-06-21 => --time: must be a time such as 2026-06-21T04:00Z or
 P --time 04:00 => --time: must be a time such as 2026-06-21T04:00Z or
-P --time sunset --date 21.6.2026 => '--date': must be a date such as 2026-06-21, got
-P --time sunset --date 2026-02-30 => '--date': must be a date such as 2026-06-21, got
+P --time sunset --date 21.6.2026 => '--date': must be a date such as 2026-06-21, or today, got
+P --time sunset --date 2026-02-30 => '--date': must be a date such as 2026-06-21, or today, got
 T --time sunset --date 2026-06-21 => --time: sunset: the sun does not set at 69.65N
 T --time noon-1x --date 2026-06-21 => --time: must be a duration such as 10min
 P --site gale --time 2026-06-21T04:00Z => --site: cannot be combined with --lat and --lon
 P --time 2026-06-21T04:00Z --preset mars-storm => --lat: is on Earth, a place on Mars
 P --time 2026-06-21T04:00Z --preset titan => --lat: the sun's path is known for Earth and Mars only
 M --site gale --time 2026-06-21T04:00Z --preset earth-hazy => --site: is on Mars (the preset is o
-M --site gale --time 16:30 => --time: on Mars must be such as 2026-06-21T04:00Z, or
-M --site gale --time sunset --date 2026-06-21 => --time: on Mars must be such as 2026-06-21T04
+M --site gale --time 16:30 => --time: on Mars must be such as 2026-06-21T04:00Z, sunset
+M --site gale --time sunset => --time sunset: needs --date or --ls
+M --site gale --time next-sunset --ls 180 => --time: next-sunset: needs a date, and a season has
 M --site gale --time 1960-06-21T04:00Z => --time: on Mars must be in the years 1972 to 2127
 M --site gale --time 16:30 --ls 180 --tz UTC => --tz: cannot be combined with --ls, which needs
 M --site gale --time 16:30 --ls 180 --date 2026-06-21 => --date: cannot be combined with --ls, which

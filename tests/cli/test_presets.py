@@ -7,6 +7,7 @@ from pathlib import Path
 import OpenImageIO
 import pytest
 
+from skybake.formats.reader import read_attributes
 from skybake.preset import load_preset, preset_names
 from tests.cli.runs import SMALL, invoke, listing, run
 from tests.cli.test_faults import check_fault
@@ -250,7 +251,7 @@ main()
 def test_without_matplotlib_drawing_is_refused_in_one_line(tmp_path):
     status, output, errors = run("presets", "plot", "mars", code=WITHOUT, cwd=tmp_path)
     assert (status, output) == (1, "")
-    assert errors == "skybake: plot: needs matplotlib; try pip install 'skybake[plot]'\n"
+    assert errors == "skybake: plot: needs matplotlib; try pip install matplotlib\n"
     assert listing(tmp_path) == []
 
 
@@ -284,9 +285,16 @@ def test_what_was_set_stands_in_the_file(tmp_path):
     changes = ("--visibility", "20km", "--ozone", "250")
     target = tmp_path / "a.exr"
     assert invoke("render", *SMALL, "--method", "hillaire", *changes, "-o", target).exit_code == 0
-    spec = OpenImageIO.ImageInput.open(str(target)).spec()
-    recipe = json.loads(spec.getattribute("skybake:recipe"))["preset"]
+    recipe = json.loads(read_attributes(target)["skybake:recipe"])["preset"]
     assert recipe["set"]["constituents.ozone.column_du"] == 250.0
     depth = recipe["set"]["constituents.aerosol.optical_depth"]
     assert recipe["constituents"]["aerosol"]["optical_depth"] == depth
     assert 0.2 < depth < 0.4
+
+
+def test_a_presets_file_may_end_in_capitals(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("X.TOML").write_text('extends = "mars"\n', encoding="utf-8")
+    result = invoke("presets", "check", "X.TOML")
+    assert result.exit_code == 0, result.output
+    assert result.stdout.startswith("X: Mars")

@@ -41,9 +41,12 @@ def test_json_says_what_was_baked(folder):
     assert (told["projection"], told["colorspace"]) == ("equirect", "lin_rec709")
     assert told["pixel"] == "half"
     assert told["clamped"] == 0
-    assert (told["preview"], told["preview_ev"]) == (None, None)
+    assert (told["preview"], told["preview_ev"], told["preview_white"]) == (None, None, None)
     assert 0.0 < told["seconds"] < 300.0
-    assert len(told) == 15
+    assert told["sun_distance_au"] == 1.0
+    assert told["sun_angular_diameter_deg"] == pytest.approx(0.5329, abs=1e-4)
+    assert told["warnings"] == []
+    assert len(told) == 19
 
 
 def test_the_file_carries_what_json_says():
@@ -66,15 +69,15 @@ def test_the_file_carries_what_json_says():
 @pytest.mark.parametrize(
     ("arguments", "name"),
     [
-        ((), "earth_sun+30.00deg_equirect.exr"),
+        ((), "earth_sun30.00deg_equirect.exr"),
         (("--sun", "-4deg"), "earth_sun-04.00deg_equirect.exr"),
         (("--sun=-4",), "earth_sun-04.00deg_equirect.exr"),
-        (("--sun", "5400arcmin"), "earth_sun+90.00deg_equirect.exr"),
-        (("--altitude", "30000ft"), "earth_sun+30.00deg_9144m_equirect.exr"),
-        (("--preset", "mars", "--altitude", "2km"), "mars_sun+30.00deg_2000m_equirect.exr"),
+        (("--sun", "5400arcmin"), "earth_sun90.00deg_equirect.exr"),
+        (("--altitude", "30000ft"), "earth_sun30.00deg_9144m_equirect.exr"),
+        (("--preset", "mars", "--altitude", "2km"), "mars_sun30.00deg_2000m_equirect.exr"),
         (
             ("--ground-albedo", "snow", "--sun-azimuth", "450", "--sun-disc", "exclude"),
-            "earth_ground.albedo=snow_sun+30.00deg_az090.00deg_nodisc_equirect.exr",
+            "earth_ground.albedo=snow_sun30.00deg_az090.00deg_nodisc_equirect.exr",
         ),
     ],
 )
@@ -87,7 +90,7 @@ def test_a_preset_of_ones_own_gives_its_name(folder):
     Path("dusty.toml").write_text(invoke("presets", "show", "mars").stdout, encoding="utf-8")
     told = render(*SMALL, "--preset", "dusty.toml", "--sun", "5")
     assert told["preset"] == "dusty"
-    assert listing(folder) == ["dusty.toml", "dusty_sun+05.00deg_equirect.exr"]
+    assert listing(folder) == ["dusty.toml", "dusty_sun05.00deg_equirect.exr"]
 
 
 FACES = ["px", "nx", "py", "ny", "pz", "nz"]
@@ -100,6 +103,7 @@ FACES = ["px", "nx", "py", "ny", "pz", "nz"]
         (("-o", "{face}.hdr"), [f"{face}.hdr" for face in FACES], (16, 16)),
         (("-o", "a.exr", "--cube-layout", "cross"), ["a.exr"], (64, 48)),
         (("-o", "a.hdr", "--cube-layout", "cross"), ["a.hdr"], (64, 48)),
+        (("-o", "a.exr", "--cube-layout", "vertical-cross"), ["a.exr"], (48, 64)),
         (("-o", "a.exr", "--cube-layout", "exr"), ["a.exr"], (16, 96)),
     ],
 )
@@ -157,7 +161,9 @@ def test_a_map_is_shown_later_as_it_would_have_been_at_once():
 def test_options_reach_the_map():
     told = render(
         *("--size", "64x32", "--colorspace", "xyz", "--ev", "3", "--pixel", "float"),
-        *("--compression", "zip:9", "--sun-disc", "exclude", "--clamp-negative"),
+        *("--compression", "zip:9", "--sun-disc", "only", "--clamp-negative"),
+        *("--equirect-rows", "poles", "--rotate", "20deg", "--sun-size", "1.5deg"),
+        *("--sun-soft", "--sun-strength", "0.5"),
         *("--method", "march", "--altitude", "1km", "-o", "a.exr"),
     )
     recipe = json.loads(read_image(Path("a.exr"))[1]["skybake:recipe"])["map"]
@@ -169,14 +175,35 @@ def test_options_reach_the_map():
         "projection": "equirect",
         "width": 64,
         "cube_layout": None,
+        "equirect_rows": "poles",
+        "rotate_deg": pytest.approx(20.0),
         "colorspace": "xyz",
         "white_luminance_cd_m2": pytest.approx(9.6),
         "pixel": "float",
         "compression": "zip:9",
-        "sun_disc": "exclude",
+        "sun_disc": "only",
+        "sun_size_deg": pytest.approx(1.5),
+        "sun_soft": True,
+        "sun_strength": 0.5,
         "clamp_negative": True,
+        "omit_exposure": False,
         "method": "march",
     }
+
+
+@pytest.mark.parametrize("projection", ["angular", "octahedral"])
+def test_a_square_map_is_baked_shown_and_part_of_a_sequence(folder, projection):
+    options = ("--projection", projection, "--size", 32, "--method", "hillaire")
+    told = render(*options, "-o", "a.hdr", "--omit-exposure", "--preview")
+    assert (told["projection"], told["preview"]) == (projection, "a.png")
+    attributes = read_image(Path("a.hdr"))[1]
+    assert attributes["whiteLuminance"] == pytest.approx(39321.6)
+    assert "EXPOSURE" not in attributes
+    assert invoke("preview", "a.hdr", "-o", "b.png").exit_code == 0
+    made = ("sequence", *options, "--frames", "1-2", "--rotate", "90deg", "-o", "s.#.exr")
+    assert invoke(*made, "--contact-sheet", "s.png").exit_code == 0
+    assert "0 frames baked, 2 skipped" in invoke(*made, "--skip-existing").stdout
+    assert "2 frames baked" in invoke(*made, "--sun-soft", "--skip-existing").stdout
 
 
 def test_people_are_told_files_and_light_with_units():

@@ -1,6 +1,10 @@
 """``skybake sequence``: what it is told, what it plans, and what it emits."""
 
+import json
+import math
+from datetime import datetime, timedelta
 from pathlib import Path
+from zoneinfo import ZoneInfo
 
 import pytest
 
@@ -53,6 +57,8 @@ P --from 2026-06-21T04:00 --to 2026-06-21T04:00 --every 1h => --to: must be afte
 --frames 1-3 --preview sky.#.jpg       => '--preview': sky.#.jpg: suffix must be .png, got '.jpg'
 --frames 1-3 --preview-ev 3            => --preview-ev: needs --preview or --contact-sheet or --anim
 --frames 1-3 --view aces1              => --view: needs --preview or --contact-sheet or --animate
+--frames 1-3 --white-balance auto      => --white-balance: needs --preview or --contact-sheet or --a
+--frames 1-3 --shot 180,0,50           => --shot: needs --preview or --contact-sheet or --animate
 --frames 1-3 --preview --preview-ev x  => '--preview-ev': must be auto or a number from -30 to 40
 --frames 1-3 --exposure-curve a.csv --ev 3 => --ev: cannot be combined with --exposure-curve
 --frames 1-3 --exposure-curve a.csv --units nits => --units: cannot be combined with --exp
@@ -284,7 +290,8 @@ def test_emitted_commands_have_what_makes_the_frames_and_nothing_else(folder):
         *("--preset", "own.toml", "--set", "aerosol.optical_depth=0.1..0.3", *DAY),
         *("--set", "ground.albedo=flat.csv", "--frames", "1-4", "--chunk-size", "3"),
         *("-o", "out dir/a.#.exr", "--workers", "1", "--skip-existing", "--retry", "2"),
-        *("--contact-sheet", "s.png", "--preview-ev", "3", "--view", "aces1"),
+        *("--contact-sheet", "s.png", "--preview-ev", "3", "--view", "aces2"),
+        *("--white-balance", "auto", "--shot", "180,0,50"),
         *("--exposure-curve", "ev.csv", "--manifest", "m.json", "--dask", "tcp://a:1", "-q"),
     )
     first = (
@@ -316,3 +323,32 @@ def test_the_default_name_tells_what_was_set_of_the_world():
         result = invoke("sequence", "--preset", "mars", "--frames", "1-2", *changes, "--dry-run")
         assert result.exit_code == 0
         assert result.stdout.splitlines()[1].endswith(f"  {name}.0002.exr")
+
+
+def test_emitted_commands_name_the_date_that_today_is():
+    place = ("--lat", "48.8566", "--lon", "2.3522", "--tz", "Europe/Paris", "--date", "today")
+    span = ("--from", "sunset", "--to", "civil-dusk", "--frames", "1-2", "--no-refraction")
+    before = datetime.now(ZoneInfo("Europe/Paris")).date()
+    command = invoke("sequence", *place, *span, "--emit-commands").stdout
+    # Midnight may pass meanwhile.
+    assert any(f"--date={before + timedelta(days=days)}" in command for days in (0, 1))
+    assert "--no-refraction" in command.split()
+    assert "today" not in command
+
+
+def test_frames_of_a_year_have_the_suns_distance_in_plan_and_manifest():
+    times = ("--lat", "0", "--lon", "0", "--from", "2026-01-03T09:00Z", "--to", "2026-07-06T09:00Z")
+    small = ("--size", "64x32", "--method", "hillaire", "-q", "--frames", "1-2", "-o", "a.#.exr")
+    result = invoke("sequence", *times, *small, "--contact-sheet", "a.png", "--manifest", "a.json")
+    assert result.exit_code == 0, result.output
+    records = json.loads(Path("a.json").read_text("utf-8"))["records"]
+    for record, distance in zip(records, (0.98330, 1.01664), strict=True):
+        assert record["sun_distance_au"] == pytest.approx(distance, abs=2e-5)
+        diameter = math.degrees(2 * math.asin(695_700 / (distance * 149_597_870.7)))
+        assert record["sun_angular_diameter_deg"] == pytest.approx(diameter, rel=1e-4)
+    planned = json.loads(invoke("sequence", *times, *small, "--dry-run", "--json").stdout)
+    assert [frame["sun_distance_au"] for frame in planned["frames"]] == [
+        record["sun_distance_au"] for record in records
+    ]
+    mean = invoke("sequence", *times, *small, "--dry-run", "--json", "--sun-distance", "mean")
+    assert "sun_distance_au" not in json.loads(mean.stdout)["frames"][0]

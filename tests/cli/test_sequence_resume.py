@@ -201,7 +201,10 @@ CHANGED_PICTURES = [
     (("--preview-ev", "12"), 3),
     # The frame with the highest sun is the one that all are exposed for by default.
     (("--preview-ev", "adapt"), 2),
-    (("--view", "aces1"), 3),
+    (("--view", "aces2"), 3),
+    (("--white-balance", "auto"), 3),
+    (("--white-balance", "none"), 0),
+    (("--shot", "180,10,50"), 3),
     (("--preview-ev", "auto"), 0),
 ]
 

@@ -8,8 +8,10 @@ from zoneinfo import ZoneInfo
 import numpy as np
 import pytest
 
+from skybake.ephemeris import mars
 from skybake.ephemeris.earth import hour_angle, sun_position
 from skybake.ephemeris.events import EVENTS, event_time, mean_solar_zone
+from skybake.ephemeris.place import SITES, Place
 from skybake.errors import InputError
 from tests.ephemeris.places import PARIS, PLACES, QUITO, TROMSO, USHUAIA, at
 
@@ -117,3 +119,65 @@ def test_a_place_without_a_zone_goes_by_its_own_sun():
     local = noon.astimezone(mean_solar_zone(USHUAIA))
     assert local.date() == SUMMER
     assert abs(local - local.replace(hour=12, minute=0, second=0)) < timedelta(minutes=17)
+
+
+@pytest.mark.parametrize(
+    ("event", "day", "previous", "following"),
+    [
+        ("sunset", SUMMER, date(2026, 5, 17), date(2026, 7, 27)),
+        ("sunrise", WINTER, date(2026, 11, 27), date(2027, 1, 15)),
+    ],
+)
+def test_the_events_around_polar_day_and_night_are_told_and_found(event, day, previous, following):
+    """Tromso's midnight sun and polar night, within two days of what the almanacs have."""
+    oslo = ZoneInfo("Europe/Oslo")
+    before, after = (
+        event_time(event, day, TROMSO, oslo, search=search) for search in ("previous", "next")
+    )
+    assert abs(before.astimezone(oslo).date() - previous) <= timedelta(days=2)
+    assert abs(after.astimezone(oslo).date() - following) <= timedelta(days=2)
+    with pytest.raises(InputError) as caught:
+        event_time(event, day, TROMSO, oslo)
+    assert str(caught.value).endswith(
+        f"; previous-{event} is on {before.astimezone(oslo):%Y-%m-%d}"
+        f"; next-{event} is on {after.astimezone(oslo):%Y-%m-%d}"
+    )
+
+
+def test_the_next_event_is_that_of_the_day_if_it_happens():
+    day = date(2026, 3, 20)
+    plain = event_time("sunset", day, TROMSO, UTC)
+    for search in ("next", "previous"):
+        assert event_time("sunset", day, TROMSO, UTC, search=search) == plain
+
+
+def test_at_the_pole_the_sun_rises_once_a_year():
+    pole = PLACES["north pole"]
+    risen = event_time("sunrise", date(2026, 1, 1), pole, UTC, search="next")
+    assert date(2026, 3, 17) <= risen.date() <= date(2026, 3, 20)
+
+
+def test_on_mars_the_events_of_a_date_surround_its_first_noon():
+    gale = SITES["gale"]
+    for days in range(40):
+        day = SUMMER + timedelta(days=days)
+        begin = datetime(day.year, day.month, day.day, tzinfo=UTC)
+        midnight, sunrise, noon, sunset = (
+            event_time(event, day, gale, UTC) for event in ("midnight", "sunrise", "noon", "sunset")
+        )
+        assert midnight < sunrise < noon < sunset
+        assert timedelta() <= noon - begin < timedelta(days=1.0275)
+        assert mars.hour_angle(noon, gale) == pytest.approx(0.0, abs=4e-5)
+
+
+def test_the_night_of_a_pole_of_mars_ends_with_a_next_sunrise():
+    pole = Place(math.radians(85.0), 0.0, "mars")
+    night = next(
+        day
+        for day in (date(2026, 1, 1) + timedelta(days=30 * n) for n in range(24))
+        if math.sin(mars.mars_time(datetime(day.year, day.month, day.day, tzinfo=UTC))[0]) < -0.9
+    )
+    with pytest.raises(InputError, match=r"does not rise at .* it stays below the horizon; prev"):
+        event_time("sunrise", night, pole, UTC)
+    risen = event_time("sunrise", night, pole, UTC, search="next")
+    assert mars.sun_position(risen, pole)[0] == pytest.approx(math.radians(-10 / 60), abs=4e-4)

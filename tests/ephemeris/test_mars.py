@@ -207,3 +207,15 @@ def test_sites_are_on_the_map():
     for place in SITES.values():
         assert abs(place.latitude) < math.pi / 2
         assert abs(place.longitude) <= math.pi
+
+
+def test_the_sun_is_as_far_as_vsop87_has_it():
+    for time in TIMES:
+        expected = ephem.Mars(terrestrial_days(time) + 36_525.0).sun_distance
+        assert mars.mars_time(time).sun_distance == pytest.approx(expected, abs=4e-4)
+
+
+@pytest.mark.parametrize(("season", "distance"), [(71, 1.6660), (251, 1.3814), (341, 1.5104)])
+def test_the_sun_is_farthest_at_ls_71_and_nearest_at_ls_251(season, distance):
+    """Semi-major axis and eccentricity of JPL's elements; half a parameter between them."""
+    assert mars.distance_in_season(math.radians(season)) == pytest.approx(distance, abs=1e-4)

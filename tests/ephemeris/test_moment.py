@@ -5,7 +5,8 @@ from datetime import UTC, date, datetime
 
 import pytest
 
-from skybake.ephemeris.earth import sun_position
+from skybake.ephemeris.earth import refraction, sun_distance, sun_position
+from skybake.ephemeris.horizon import Horizon
 from skybake.ephemeris.moment import TimeSpan, sun_at
 from skybake.ephemeris.place import SITES, Place, check_planet, find_place
 from skybake.errors import ArgumentError
@@ -13,6 +14,7 @@ from tests.ephemeris.places import PARIS, TROMSO
 
 SUMMER = date(2026, 6, 21)
 GALE = SITES["gale"]
+APIA = Place(math.radians(-13.83), math.radians(-171.77))
 HOUR = 3600.0
 
 
@@ -53,8 +55,9 @@ def test_a_night_goes_from_sunset_to_the_next_sunrise():
     found = TimeSpan("sunset", "sunrise", PARIS, day=SUMMER, zone="Europe/Paris").moments(3)
     assert found[0].label.startswith("2026-06-21T21:57")
     assert found[-1].label.startswith("2026-06-22T05:47")
-    assert found[0].sun_elevation == pytest.approx(math.radians(-50 / 60), abs=4e-5)
-    assert found[-1].sun_elevation == pytest.approx(math.radians(-50 / 60), abs=4e-5)
+    seen = math.radians(-50 / 60) + refraction(math.radians(-50 / 60))
+    assert found[0].sun_elevation == pytest.approx(seen, abs=4e-5)
+    assert found[-1].sun_elevation == pytest.approx(seen, abs=4e-5)
     assert found[1].sun_elevation < math.radians(-15.0)
 
 
@@ -102,12 +105,28 @@ def test_a_faulty_span_names_the_argument(start, end, options, message):
             {"day": SUMMER},
             "day: needs time sunset or another event",
         ),
-        ("2026-06-21T04:00Z", PARIS, {"zone": "UTC"}, "zone: needs a time without an offset of"),
+        ("sunset", PARIS, {"day": SUMMER, "altitude": -1.0}, "altitude: must be at least 0 km, g"),
+        (
+            "sunset",
+            APIA,
+            {"day": date(2011, 12, 30), "zone": "Pacific/Apia"},
+            "day: does not exist in Pacific/Apia, where clocks change from 2011-12-30 00:00 to "
+            "2011-12-31 00:00, got",
+        ),
+        ("2011-12-30T09:00", APIA, {"zone": "Pacific/Apia"}, "time: does not exist in Pacific/"),
         ("2026-06-21T04:00", PARIS, {"zone": "Mars/Gale"}, "zone: unknown time zone 'Mars/Gale'"),
         ("12:00", PARIS, {"solar_longitude": 1.0}, "solar_longitude: is a season of Mars (the pl"),
         ("12:00", GALE, {"solar_longitude": 7.0}, "solar_longitude: must be from 0deg to 360deg"),
         ("25:00", GALE, {"solar_longitude": 1.0}, "time: must be a time of day such as 04:00"),
-        ("12:00", GALE, {}, "time: on Mars must be such as 2026-06-21T04:00Z, or 16:30"),
+        ("12:00", GALE, {}, "time: on Mars must be such as 2026-06-21T04:00Z, sunset with day,"),
+        ("sunset", GALE, {}, "time sunset: needs day or solar_longitude"),
+        ("next-sunset", GALE, {"solar_longitude": 1.0}, "time: next-sunset: needs a date, and"),
+        (
+            "sunset",
+            Place(math.radians(80.0), 0.0, "mars"),
+            {"solar_longitude": math.pi / 2},
+            "time: sunset: the sun does not set at 80.00N 0.00E at Ls 90, it stays above the hor",
+        ),
         ("1960-06-21T04:00Z", GALE, {}, "time: on Mars must be in the years 1972 to 2127"),
         ("2026-06-21T04:00Z", GALE, {"refraction": True}, "refraction: is that of Earth's atmosp"),
     ],
@@ -116,6 +135,84 @@ def test_a_faulty_time_names_the_argument(time, place, options, message):
     with pytest.raises(ArgumentError) as caught:
         sun_at(time, place, **options)
     assert str(caught.value).startswith(message)
+
+
+@pytest.mark.parametrize("altitude", [0.0, 0.1, 4.2, 12.0])
+@pytest.mark.parametrize("event", ["sunrise", "sunset"])
+def test_the_sun_is_seen_on_the_horizon_as_it_rises_and_sets(event, altitude):
+    """Its upper edge is within 4' of the horizon of the altitude, with refraction or without."""
+    for lifted in (None, False):
+        sun = sun_at(event, PARIS, day=SUMMER, altitude=altitude, refraction=lifted)
+        edge = math.degrees(sun.sun_elevation + Horizon("earth", altitude).dip) * 60 + 16
+        assert edge == pytest.approx(3.1 if lifted is None else 0.0, abs=0.15)
+
+
+def test_the_dip_of_the_horizon_delays_sunset():
+    """At 4200 m by the sunrise equation's 2.08' times the root of metres, less a tenth."""
+    low, high = (sun_at("sunset", PARIS, day=SUMMER, altitude=km) for km in (0.0, 4.2))
+    lower = math.degrees(sun_position(low.time, PARIS)[0] - sun_position(high.time, PARIS)[0])
+    assert lower * 60 == pytest.approx(math.sqrt(4200) * 2.076, rel=0.08)
+
+
+def test_an_event_raises_the_sun_and_a_clock_does_not():
+    event = sun_at("noon", PARIS, day=SUMMER)
+    assert event.attributes["skybake:refraction"] > 0.0
+    plain = sun_at(event.time, PARIS)
+    assert "skybake:refraction" not in plain.attributes
+    assert plain.sun_elevation < event.sun_elevation
+    assert sun_at("noon", PARIS, day=SUMMER, refraction=False).sun_elevation == plain.sun_elevation
+    span = TimeSpan("2026-06-21T18:00Z", "sunset", PARIS, day=SUMMER).moments(2)
+    assert all("skybake:refraction" in one.attributes for one in span)
+
+
+def test_a_climb_has_the_horizon_of_each_moments_altitude():
+    first, middle, last = TimeSpan(
+        "sunset-30min", "sunset", PARIS, day=SUMMER, altitude=(0.0, 4.0)
+    ).moments(3)
+    assert first.time == sun_at("sunset-30min", PARIS, day=SUMMER).time
+    assert last == sun_at("sunset", PARIS, day=SUMMER, altitude=4.0)
+    halfway = sun_at(middle.time, PARIS, refraction=True, altitude=2.0)
+    assert halfway.sun_elevation == middle.sun_elevation
+
+
+def test_a_moment_has_the_suns_distance_on_both_planets():
+    time = datetime(2026, 1, 3, 17, tzinfo=UTC)
+    assert (
+        sun_at(time, PARIS).sun_distance == sun_distance(time) == pytest.approx(0.98330, abs=2e-5)
+    )
+    season = sun_at("12:00", GALE, solar_longitude=math.radians(251.0))
+    assert season.sun_distance == pytest.approx(1.38137, abs=2e-5)
+    day = sun_at(time, GALE)
+    again = math.radians(day.attributes["skybake:solarLongitude"])
+    assert day.sun_distance == pytest.approx(
+        sun_at("12:00", GALE, solar_longitude=again).sun_distance, abs=3e-4
+    )
+
+
+@pytest.mark.parametrize("event", ["sunrise", "sunset"])
+@pytest.mark.parametrize("altitude", [0.0, 5.0])
+def test_on_mars_the_sun_rises_and_sets_by_date_and_by_season(event, altitude):
+    """Its upper edge, 10.5' above its centre on average, is on the horizon."""
+    day = sun_at(event, GALE, day=SUMMER, altitude=altitude)
+    season = math.radians(day.attributes["skybake:solarLongitude"])
+    edge = math.asin(695_700.0 / (day.sun_distance * 149_597_870.7))
+    target = -edge - Horizon("mars", altitude).dip
+    assert day.sun_elevation == pytest.approx(target, abs=4e-5)
+    assert (math.sin(day.sun_azimuth) > 0.0) == (event == "sunrise")
+    same = sun_at(event, GALE, solar_longitude=season, altitude=altitude)
+    assert same.sun_elevation == pytest.approx(target, abs=1e-6)
+    assert same.sun_azimuth == pytest.approx(day.sun_azimuth, abs=1e-4)
+    clocks = [one.attributes["skybake:trueSolarTime"] for one in (day, same)]
+    assert clocks[0][:5] == clocks[1][:5]
+
+
+def test_a_sol_goes_from_an_hour_before_sunrise_to_an_hour_after_sunset():
+    found = TimeSpan("sunrise-1h", "sunset+1h", GALE, every=HOUR, solar_longitude=0.0).moments()
+    clocks = [one.attributes["skybake:trueSolarTime"] for one in found]
+    assert clocks[0].startswith("04:5")
+    assert clocks[-1].startswith("18:5")
+    night = TimeSpan("sunset", "sunrise", GALE, solar_longitude=0.0).moments(3)
+    assert [one.sun_elevation > -0.01 for one in night] == [True, False, True]
 
 
 def test_a_place_is_given_by_coordinates_or_on_mars_by_its_name():

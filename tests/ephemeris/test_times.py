@@ -8,16 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from skybake.ephemeris.events import EVENTS, event_time
+from skybake.ephemeris.local_clock import find_zone, local_text, utc_text
 from skybake.ephemeris.times import (
     MAX_STEPS,
-    find_zone,
     kind_of,
-    local_text,
     parse_clock,
     parse_end,
     parse_time,
     steps,
-    utc_text,
 )
 from skybake.errors import InputError
 from tests.ephemeris.places import PARIS, TROMSO
@@ -156,17 +154,32 @@ def test_another_end_that_is_not_after_the_start_is_refused():
 @pytest.mark.parametrize(
     ("name", "nearest"),
     [
-        ("Europe/Pari", "Europe/Paris"),
-        ("europe/paris", "Europe/Paris"),
-        *((bad, "Europe/") for bad in ("Europe", "", "/etc/passwd", "../zone", "a\0b", "é")),
+        ("Europe/Pari", "nearest: Europe/Paris"),
+        ("europe/paris", "nearest: Europe/Paris"),
+        ("New York", "nearest: America/New_York"),
+        ("new_york", "nearest: America/New_York"),
+        ("Los Angeles", "nearest: America/Los_Angeles"),
+        ("Buenos Aires", "nearest: America/Buenos_Aires, America/Argentina/Buenos_Aires"),
+        ("Tokio", "nearest: Asia/Tokyo"),
+        ("utc ", "nearest: UTC, Etc/UTC"),
+        *(
+            (bad, "must be such as Europe/Paris or UTC")
+            for bad in ("", "/etc/passwd", "a\0b", "é", "Springfield")
+        ),
     ],
 )
-def test_an_unknown_zone_tells_the_nearest(name, nearest):
-    assert f"unknown time zone {name!r}; nearest: {nearest}" in message(find_zone, name)
+def test_an_unknown_zone_tells_the_nearest_or_an_example(name, nearest):
+    assert message(find_zone, name).startswith(f"unknown time zone {name!r}; {nearest}")
+
+
+@pytest.mark.parametrize("name", ["New York", "Europe/Pari", "kiritimatti", "EST5", "Sao Paulo"])
+def test_every_zone_that_is_suggested_exists(name):
+    for suggested in message(find_zone, name).partition("nearest: ")[2].split(", "):
+        assert find_zone(suggested).key == suggested
 
 
 def test_without_a_database_it_says_what_to_install(monkeypatch):
-    monkeypatch.setattr("skybake.ephemeris.times.available_timezones", set)
+    monkeypatch.setattr("skybake.ephemeris.local_clock.available_timezones", set)
     assert message(find_zone, "Europe/Pari").endswith("is installed (pip install tzdata)")
 
 

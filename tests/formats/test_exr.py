@@ -6,6 +6,7 @@ import OpenImageIO
 import pytest
 
 from skybake.errors import InputError, OutputError
+from skybake.formats.reader import read_attributes
 from skybake.formats.writer import open_map
 from tests.formats.maps import HEIGHT, WIDTH, listing, map_spec, sky, write_map
 
@@ -194,3 +195,25 @@ def test_the_suffix_may_be_written_in_capitals(tmp_path):
     write_map(tmp_path / "A.EXR", sky())
 
     assert header(tmp_path / "A.EXR")["type"] == OpenEXR.scanlineimage
+
+
+@pytest.mark.parametrize("letter", ["x", "µ", "€", "😀"])
+@pytest.mark.parametrize("length", [0, 1, 63, 84, 127, 254, 255, 256, 300, 4000])
+def test_a_long_text_is_cut_into_pieces_and_joined_again(tmp_path, length, letter):
+    """FFmpeg 5.1 reads 255 bytes of an attribute."""
+    path, text = tmp_path / "a.exr", letter * length + "."
+    write_map(path, sky(), attributes={"skybake:recipe": text, "skybake:recipeHash": "0123"})
+    texts = [value for value in header(path).values() if isinstance(value, str)]
+    assert max(len(value.encode()) for value in texts) <= 255
+    found = read_attributes(path)
+    assert found["skybake:recipe"] == text
+    assert found["skybake:recipeHash"] == "0123"
+    assert not [name for name in found if name.startswith("skybake:recipe:")]
+
+
+def test_texts_that_only_look_like_pieces_stay_apart(tmp_path):
+    path = tmp_path / "a.exr"
+    attributes = {"a": "short", "a:2": "other", "b": "x" * 250, "b:3": "not the second"}
+    write_map(path, sky(), attributes=attributes)
+    found = read_attributes(path)
+    assert {name: found[name] for name in attributes} == attributes

@@ -9,6 +9,7 @@ from hypothesis.extra.numpy import arrays
 
 from skybake.errors import InputError, OutputError
 from skybake.formats.hdr import read_header, round_to_rgbe
+from skybake.formats.reader import read_attributes
 from tests.formats.maps import listing, sky, write_map
 
 
@@ -102,6 +103,27 @@ def test_exposure_gives_the_luminance_by_the_rule_of_radiance(tmp_path):
 
     exposure = float(read_header(tmp_path / "a.hdr")["EXPOSURE"])
     assert 179.0 * 1.0 / exposure == pytest.approx(1234.5)
+
+
+def test_without_exposure_a_comment_gives_the_luminance_of_white(tmp_path):
+    path = tmp_path / "a.hdr"
+    writer = write_map(path, sky(), white_luminance=1234.5, states_exposure=False)
+    lines = path.read_bytes().partition(b"\n\n")[0].split(b"\n")
+
+    assert writer.clamped == 0
+    assert b"# whiteLuminance=1234.5" in lines
+    assert not [line for line in lines if b"EXPOSURE" in line]
+    assert read_attributes(path)["whiteLuminance"] == 1234.5
+
+
+@pytest.mark.parametrize("white", ["-1", "0", "nan", "inf"])
+def test_a_luminance_of_white_that_cannot_be_is_none(tmp_path, white):
+    path = tmp_path / "a.hdr"
+    path.write_bytes(
+        b"#?RADIANCE\n# whiteLuminance=%s\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\1\2\3\4"
+        % white.encode()
+    )
+    assert "whiteLuminance" not in read_attributes(path)
 
 
 def test_exposures_of_several_programs_multiply(tmp_path):

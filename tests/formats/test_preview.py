@@ -9,7 +9,7 @@ import pytest
 
 from skybake.colour.space import COLOUR_SPACES, find_colour_space, rgb_from_xyz
 from skybake.errors import InputError, OutputError
-from skybake.formats.preview import VIEWS, display_values, write_preview
+from skybake.formats.preview import DEFAULT_VIEW, VIEWS, display_values, write_preview
 from tests.formats.maps import listing, sky
 
 REC709 = find_colour_space("lin_rec709")
@@ -65,7 +65,7 @@ def test_suns_saturated_blues_and_negative_light_stay_on_the_display(view):
 def test_codes_are_the_display_values_dithered_by_less_than_one_code(tmp_path):
     ramp = np.broadcast_to(grey(*np.linspace(0.01, 0.02, 256)), (128, 256, 3)).copy()
     write_preview(tmp_path / "a.png", ramp, REC709, gain=1.0)
-    wanted = display_values(ramp, REC709, "aces2") * 255.0
+    wanted = display_values(ramp, REC709, DEFAULT_VIEW) * 255.0
     difference = codes(tmp_path / "a.png") - wanted
 
     assert np.abs(difference).max() < 1.0
@@ -136,7 +136,7 @@ def test_the_configuration_of_the_environment_does_not_change_the_picture(tmp_pa
 
 
 def test_an_unknown_view_or_suffix_is_refused_with_the_known_ones(tmp_path):
-    with pytest.raises(InputError, match="view: must be one of aces2, aces1, got 'filmic'"):
+    with pytest.raises(InputError, match="view: must be one of aces1, aces2, got 'filmic'"):
         write_preview(tmp_path / "a.png", sky(), REC709, gain=1.0, view="filmic")
     with pytest.raises(InputError, match=r"a.jpg: suffix of a preview must be .png, got '.jpg'"):
         write_preview(tmp_path / "a.jpg", sky(), REC709, gain=1.0)

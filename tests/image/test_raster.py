@@ -9,13 +9,17 @@ from skybake.image.raster import Raster
 from skybake.image.scene import Scene
 from skybake.image.settings import map_settings
 from skybake.preset import load_preset
-from skybake.projection import Cubemap, Equirect, Fisheye, Perspective
+from skybake.projection import Angular, Cubemap, Equirect, Fisheye, Octahedral, Perspective
 
 EARTH = load_preset("earth")
 PROJECTIONS = [
     Equirect(64),
     Cubemap(16, "cross"),
     Cubemap(16, "exr"),
+    Cubemap(16, "vertical-cross"),
+    Equirect(64, "poles"),
+    Angular(48),
+    Octahedral(32),
     Fisheye(48),
     Perspective(64, 36, math.radians(60.0), math.pi, 0.3),
 ]

@@ -65,6 +65,15 @@ def test_the_gas_of_mars_scatters_fifty_times_less_than_air():
     np.testing.assert_allclose(scattering, [1.00e-4, 2.38e-4, 5.97e-4], rtol=5e-3)
 
 
+def test_hydrogen_depolarises_as_its_two_polarisabilities_say():
+    # Hohm (1993), Mol. Phys. 78, 929: mean 5.539 and anisotropy 2.107 atomic units at 632.8 nm.
+    # Refractive indices, Peck & Huang (1977), give a mean of 5.53.
+    _, depolarisation = gas_scattering(gas({"h2": 1.0}), np.array([400.0, 632.8, 800.0]))
+    ratio = 6.0 * 2.107**2 / (45.0 * 5.539**2 + 7.0 * 2.107**2)
+    assert depolarisation[1] == pytest.approx(ratio, rel=1e-3)
+    assert np.all(np.diff(depolarisation) < 0.0)
+
+
 def test_argon_does_not_depolarise():
     _, depolarisation = gas_scattering(gas({"ar": 1.0}), np.array([400.0, 700.0]))
     np.testing.assert_array_equal(depolarisation, 0.0)

@@ -116,4 +116,11 @@ def test_the_suns_limb_is_darker_in_the_blue_and_nowhere_negative():
     u, v = limb_darkening(load_preset("earth").star, np.array([400.0, 550.0, 700.0]))
     assert np.all(np.diff(1.0 - u - v) > 0.0)
     assert np.all(1.0 - u - v > 0.0)
-    np.testing.assert_allclose(1.0 - u / 3.0 - v / 2.0, [0.72, 0.805, 0.85], atol=0.02)
+
+
+def test_the_suns_disc_has_the_mean_that_was_measured():
+    # Neckel & Labs (1994), Solar Phys. 153, 91, table I: mean over the disc to its centre.
+    wavelengths = np.array([390.915, 445.125, 492.905, 559.95, 610.975, 700.875, 811.76])
+    u, v = limb_darkening(load_preset("earth").star, wavelengths)
+    measured = [0.7204, 0.7596, 0.7823, 0.8061, 0.8221, 0.8434, 0.8621]
+    np.testing.assert_allclose(1.0 - u / 3.0 - v / 2.0, measured, atol=3e-4)

@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 
 from skybake.optics.medium import aerosol_optical_depth, altitude_nodes, build_medium
-from skybake.optics.phase import build_phase, integrate_phase, scattering_angles
+from skybake.optics.phase import (
+    build_phase,
+    integrate_phase,
+    phase_henyey_greenstein,
+    scattering_angles,
+)
 from skybake.preset import Aerosol, TabulatedPhase, load_preset
 
 NU = np.cos(scattering_angles())[:, None]
@@ -18,13 +23,12 @@ def aerosol(preset, name="aerosol"):
 
 
 # Hess et al. (1998), OPAC, at 80 % humidity and 550 nm: single scattering albedo, asymmetry, and
-# the exponent between 440 and 700 nm that its tables give. OPAC 4's desert has spheroids.
+# the exponent between 440 and 700 nm that its tables give.
 OPAC = {
     "earth-clear": (0.972, 0.709, 1.31),
     "earth-hazy": (0.892, 0.698, 1.35),
     "earth-urban": (0.817, 0.689, 1.34),
     "earth-maritime": (0.997, 0.772, 0.09),
-    "earth-desert-dust": (0.888, 0.729, 0.18),
 }
 
 
@@ -37,6 +41,46 @@ def test_aerosols_by_mie_theory_have_the_optics_that_opac_publishes(preset):
     assert integrate_phase(phase * NU)[0] == pytest.approx(asymmetry, abs=0.003)
     blue, red = aerosol_optical_depth(aerosol(preset), np.array([440.0, 700.0]))
     assert np.log(blue / red) / np.log(700.0 / 440.0) == pytest.approx(exponent, abs=0.03)
+
+
+def test_the_desert_table_of_opac_has_the_optics_that_opac_publishes():
+    """OPAC 4's desert has spheroids."""
+    changes = {
+        "aerosol.relative_extinction": "opac_desert",
+        "aerosol.single_scattering_albedo": "opac_desert",
+        "aerosol.phase.table": "opac_desert_phase",
+    }
+    medium = build_medium(load_preset("earth-desert-dust", changes), GREEN)
+    assert medium.scattering[2, 0] / medium.extinction[2, 0] == pytest.approx(0.888, abs=0.003)
+    assert integrate_phase(medium.phase[2] * NU)[0] == pytest.approx(0.729, abs=0.003)
+
+
+def test_desert_dust_absorbs_as_little_as_over_the_sahara():
+    """Kim et al. (2011), AERONET: single scattering albedo of 0.946 +- 0.005 at 550 nm."""
+    medium = build_medium(load_preset("earth-desert-dust"), np.array([440.0, 550.0, 675.0]))
+    blue, green, red = medium.scattering[2] / medium.extinction[2]
+    assert green == pytest.approx(0.946, abs=0.005)
+    # Iron oxides: most in the blue.
+    assert blue < green - 0.02 < red - 0.02
+
+
+def test_droplets_of_earth_have_the_aureole_that_one_asymmetry_cannot_give():
+    """3.7 times what Henyey & Greenstein have at 0.5 deg from the sun, a sixth less at 10."""
+    at = np.radians([0.5, 10.0])
+    phase = aerosol("earth").phase
+    table = build_phase(phase, GREEN)[:, 0]
+    asymmetry = integrate_phase(table[:, None] * NU)
+    formula = phase_henyey_greenstein(np.cos(at), asymmetry)
+    ratio = np.interp(at, scattering_angles(), table) / formula
+    np.testing.assert_allclose(ratio, [3.7, 0.84], rtol=0.02)
+
+
+@pytest.mark.parametrize("preset", ["earth", "exo-m-dwarf"])
+def test_the_phase_function_is_that_of_the_particles_whose_colour_it_has(preset):
+    """Kinne (2019): the mean of Earth has an asymmetry of 0.702 at 550 nm; OPAC 0.703."""
+    assert isinstance(aerosol(preset).phase, TabulatedPhase)
+    phase = build_phase(aerosol(preset).phase, GREEN)
+    assert integrate_phase(phase * NU)[0] == pytest.approx(0.703, abs=0.003)
 
 
 def test_sea_salt_has_a_bow_and_smoke_has_none():
@@ -122,6 +166,35 @@ def test_titans_haze_has_the_optical_depths_that_huygens_measured():
         for layer in ("upper", "middle", "lower")
     )
     np.testing.assert_allclose(depth, [5.6, 8.1, 12.2], rtol=0.02)
+
+
+def test_titans_haze_has_the_mean_cosines_of_the_table_of_tomasko():
+    """Tomasko et al. (2008), table 1: 0.73 to 0.80, at most 0.783 up to 600 nm."""
+    wavelengths = np.array([360.0, 480.0, 600.0, 713.0, 830.0])
+    for layer in ("upper", "middle", "lower"):
+        phase = build_phase(aerosol("titan", f"{layer}_haze").phase, wavelengths)
+        cosines = integrate_phase(phase * NU)
+        np.testing.assert_allclose(cosines, [0.729, 0.756, 0.783, 0.799, 0.788], atol=0.003)
+
+
+def test_titans_haze_absorbs_more_above_80_km_by_the_rule_of_doose():
+    """Doose et al. (2016): (0.565 + albedo above 200 km) / 1.5 below 80 km, 0.963 at 553 nm."""
+    at = np.array([553.0, 650.0])
+    upper, lower = (
+        medium.scattering[i] / medium.extinction[i]
+        for medium in [build_medium(load_preset("titan"), at)]
+        for i in (1, 3)
+    )
+    np.testing.assert_allclose(lower, [0.963, 0.988], atol=0.002)
+    # A weighted mean of both: 0.544 of the haze above 80 km is as it is below.
+    np.testing.assert_allclose(upper, 0.544 * lower + 0.456 * (1.5 * lower - 0.565), atol=0.002)
+
+
+def test_the_deck_of_venus_has_the_colour_of_the_planet():
+    """Mallama et al. (2017), table 7: 0.658 at 438 nm and 0.348 at 366 nm, 0.689 at 551 nm."""
+    albedo = build_medium(load_preset("venus-cloudtop"), np.array([366.0, 438.0, 551.0]))
+    blue = albedo.ground_albedo / albedo.ground_albedo[2]
+    np.testing.assert_allclose(blue, np.array([0.348, 0.658, 0.689]) / 0.689, atol=0.002)
 
 
 def test_the_dwarfs_planet_gets_the_power_of_earth_from_a_disc_of_two_degrees():

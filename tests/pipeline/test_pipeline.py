@@ -63,8 +63,8 @@ def test_a_preview_of_another_exposure_takes_no_ray_and_no_new_table(rays):
     pipeline = skybake.Pipeline()
     pipeline.picture("earth", PLAIN, width=64)
     rays.clear()
-    dark = pipeline.picture("earth", PLAIN, width=64, ev=16.0)
-    bright = pipeline.picture("earth", PLAIN, width=64, ev=12.0)
+    dark = pipeline.picture("earth", PLAIN, width=64, picture=skybake.PictureSettings(ev=16.0))
+    bright = pipeline.picture("earth", PLAIN, width=64, picture=skybake.PictureSettings(ev=12.0))
     assert set(rays) == {"fill_directions", "fill_sight_columns"}
     assert dark.mean() < bright.mean()
 

@@ -112,7 +112,7 @@ def test_a_broken_phase_table_of_the_user_is_named_in_one_line(tmp_path, text, m
 
 def test_more_constituents_than_kernels_hold_are_refused(tmp_path):
     more = "\n".join(GAS.replace("constituents.gas", f"constituents.gas{i}") for i in range(16))
-    with pytest.raises(PresetError, match="constituents: must be 1 to 16, got 17"):
+    with pytest.raises(PresetError, match="constituents: must be at most 16, got 17"):
         load_preset(write(tmp_path, new=more))
 
 

@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 
 from skybake.errors import InputError
 from skybake.optics.phase import eval_phase
-from skybake.scattering.multiple import NEGLIGIBLE
 from skybake.scattering.ray import trace_rays
 from skybake.scattering.segments import MAX_DISTANCES, trace_segments
 from tests.kernels import ray_limits
@@ -71,7 +70,7 @@ def test_an_infinite_distance_gives_the_whole_ray(name, h, elevation):
     atmosphere = truth_atmosphere(name)
     arguments = rays(name, h, elevation)
     whole = trace_rays(atmosphere, *arguments)
-    light = trace_segments(atmosphere, *arguments, [math.inf], negligible_share=NEGLIGIBLE)
+    light = trace_segments(atmosphere, *arguments, [math.inf])
     np.testing.assert_array_equal(light.single[:, 0], whole.single)
     np.testing.assert_array_equal(light.diffuse[:, 0], whole.diffuse)
 

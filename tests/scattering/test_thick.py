@@ -8,7 +8,7 @@ import pytest
 from skybake.optics.phase import scattering_angles
 from skybake.reference.estimate import irradiance
 from skybake.scattering.atmosphere import dark_atmosphere
-from skybake.scattering.solver import solve_field
+from skybake.scattering.solver import solve_light
 from tests.kernels import fill_ground_irradiance
 from tests.media import plain_medium
 from tests.truth import henyey_greenstein
@@ -31,7 +31,7 @@ def test_light_that_reaches_the_ground_is_that_of_paths(optical_depth, tolerance
     medium = thick_medium(optical_depth)
     dark = dark_atmosphere(medium, "full")
     sky = np.empty(dark.scaled.medium.ground_albedo.size)
-    field = solve_field(dark)
+    field = solve_light(dark).field
     fill_ground_irradiance(field, 0.9, np.empty(4), sky)
     # What is truncated counts as sunlight there: only both together can be compared.
     direct = 0.9 * math.exp(-(1.0 - dark.scaled.fraction[0, 0]) * optical_depth / 0.9)
@@ -47,7 +47,7 @@ def test_depth_30_lets_as_much_light_through_as_diffusion():
     """Eddington's approximation with delta scaling (Joseph et al. 1976), good to some percent."""
     dark = dark_atmosphere(thick_medium(30.0), "full")
     sky = np.empty(dark.scaled.medium.ground_albedo.size)
-    field = solve_field(dark)
+    field = solve_light(dark).field
     fill_ground_irradiance(field, 0.9, np.empty(4), sky)
     transmitted = (2.0 / 3.0 + 0.9) / (4.0 / 3.0 + (1.0 - 0.75) * 30.0)
     assert sky[0] == pytest.approx(0.9 * transmitted, rel=0.05)

@@ -33,6 +33,8 @@ def record(frame, elevation=30.0, azimuth=180.0, **changes):
         "altitude_m": 0.0,
         "sun_direction": direction(elevation, azimuth),
         "sun_colour": (1.2, 0.98, 0.61),
+        "sun_distance_au": 1.0,
+        "sun_angular_diameter_deg": 0.533,
         "sun_illuminance_lux": 90000.0,
         "direct_illuminance_lux": 45000.0,
         "sky_illuminance_lux": 12345.678,

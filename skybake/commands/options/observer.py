@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import click
 
 from skybake.commands.options import values
-from skybake.commands.options.rules import Decorator
+from skybake.commands.options.rules import Decorator, Needs
 
 
 def sun_option(*, is_range: bool = False) -> Decorator:
@@ -33,6 +33,22 @@ def sun_azimuth_option(*, is_range: bool = False) -> Decorator:
         show_default=True,
         help="Compass bearing of the sun: 0deg is north, 90deg east.",
     )
+
+
+def sun_distance_option() -> Decorator:
+    """Return ``--sun-distance``."""
+    return click.option(
+        "--sun-distance",
+        metavar="AU|mean|date",
+        type=values.sun_distance,
+        help="How far the sun is, which sets its light and the size of its disc: in au, the "
+        "preset's mean, or as on the date, which is the default with a time.",
+    )
+
+
+def sun_distance_needs(options: Mapping[str, Any], *, is_timed: bool, time: str) -> Needs:
+    """Return what `sun_distance_option` needs: `time`, the option or options of a time."""
+    return {"sun_distance": (is_timed or options["sun_distance"] != "date", f"date needs {time}")}
 
 
 def altitude_option(*, is_range: bool = False) -> Decorator:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import date, datetime, timedelta
 from typing import TYPE_CHECKING
 
 import click
@@ -15,6 +16,7 @@ from skybake.commands.options.rules import (
     usage_faults,
 )
 from skybake.ephemeris.place import SITES, check_planet, find_place
+from skybake.errors import InputError
 
 if TYPE_CHECKING:
     from skybake.ephemeris.place import Place
@@ -55,13 +57,14 @@ place_options = options_together(
     click.option(
         "--date",
         "day",
-        metavar="YYYY-MM-DD",
+        metavar="YYYY-MM-DD|today",
         type=values.day,
-        help="Local date of sunset, noon and the like.",
+        help="Local date of sunset, noon and the like; also tomorrow or yesterday.",
     ),
     click.option(
-        "--refraction",
-        is_flag=True,
+        "--refraction/--no-refraction",
+        default=None,
+        show_default="on Earth for sunset, noon and the like",
         help="Raise the sun by refraction in Earth's atmosphere, half a degree at the horizon.",
     ),
 )
@@ -76,6 +79,30 @@ def place_needs(*, is_timed: bool, time: str) -> Needs:
     return dict.fromkeys(where, (is_timed, f"needs {time}")) | dict.fromkeys(
         ("sun_elevation", "sun_azimuth"), (not is_timed, f"cannot be combined with {time}")
     )
+
+
+def day_from_options(context: click.Context, place: Place) -> date | None:
+    """Return the date of ``--date``, in which today is that of the local clock.
+
+    Raises
+    ------
+    click.UsageError
+        If there is no such time zone.
+    """
+    day = context.params["day"]
+    if not isinstance(day, str):
+        found: date | None = day
+        return found
+
+    from skybake.ephemeris.events import mean_solar_zone
+    from skybake.ephemeris.local_clock import find_zone
+
+    name = context.params["zone"]
+    try:
+        zone = mean_solar_zone(place) if name is None else find_zone(name)
+    except InputError as error:
+        raise click.UsageError(f"--tz: {error}") from error
+    return (datetime.now(zone) + timedelta(days=values.DAYS_FROM_TODAY[day])).date()
 
 
 def place_from_options(context: click.Context, time: str) -> Place:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from skybake.commands.options import values
 from skybake.commands.options.rules import Decorator, Needs, options_together
+
+if TYPE_CHECKING:
+    from skybake.image.picture_settings import PictureSettings
 
 BESIDE = Path("beside-the-map.png")
 """Selects the default name of a preview."""
@@ -29,11 +32,27 @@ def _preview_option(metavar: str, text: str) -> Decorator:
     )
 
 
-_view_option = click.option(
-    "--view",
-    type=click.Choice(values.VIEWS),
-    show_default=values.VIEWS[0],
-    help="Its display transform: ACES 2.0, or that of ACES 1.3.",
+look_options = options_together(
+    click.option(
+        "--white-balance",
+        metavar="auto|none|KELVIN",
+        type=values.white_balance,
+        show_default="none on Earth, auto on other worlds",
+        help="What its white is: by auto the light that falls on the ground; none is D65. Maps are "
+        "never changed.",
+    ),
+    click.option(
+        "--shot",
+        metavar="AZIMUTH,ELEVATION,FOV",
+        type=values.shot,
+        help="Show a perspective view of the map, 16:9, of which FOV is the width.",
+    ),
+    click.option(
+        "--view",
+        type=click.Choice(values.VIEWS),
+        show_default=values.VIEWS[0],
+        help="Its display transform: that of ACES 1.3, or ACES 2.0.",
+    ),
 )
 
 preview_options = options_together(
@@ -43,9 +62,9 @@ preview_options = options_together(
         metavar="auto|N",
         type=values.exposure,
         show_default="auto",
-        help="Its exposure value at ISO 100; auto finds a legible one.",
+        help="Its exposure value at ISO 100; auto meters the sky as a camera does.",
     ),
-    _view_option,
+    look_options,
 )
 
 sequence_preview_options = options_together(
@@ -54,12 +73,35 @@ sequence_preview_options = options_together(
         "--preview-ev",
         metavar="auto|adapt|N",
         type=values.sequence_exposure,
-        show_default="auto",
+        show_default="auto, and adapt for contact sheets",
         help="Exposure value of all pictures at ISO 100; auto suits the frame with the highest "
         "sun, adapt finds one for each frame.",
     ),
-    _view_option,
+    look_options,
 )
+
+_NAMES = ("preview_ev", "white_balance", "shot", "view")
+
+
+def picture_from_options(options: Mapping[str, Any], ev: float | str | None) -> PictureSettings:
+    """Return how pictures show maps.
+
+    Parameters
+    ----------
+    options : mapping
+        With the values of `look_options`.
+    ev : float, str or None
+        Exposure value, as of `PictureSettings`.
+    """
+    from skybake.image.picture_settings import PictureSettings, shot
+
+    view = options["shot"]
+    return PictureSettings(
+        ev=ev,  # type: ignore[arg-type]
+        view=options["view"] or values.VIEWS[0],
+        white_balance=options["white_balance"],
+        shot=None if view is None else shot(*view),
+    )
 
 
 def preview_needs(options: Mapping[str, Any]) -> Needs:
@@ -67,4 +109,4 @@ def preview_needs(options: Mapping[str, Any]) -> Needs:
     pictures = [name for name in _SEQUENCE_PICTURES if name in options]
     has_pictures = any(options[name] is not None for name in pictures)
     need = " or ".join(f"--{name.replace('_', '-')}" for name in pictures)
-    return dict.fromkeys(("preview_ev", "view"), (has_pictures, f"needs {need}"))
+    return dict.fromkeys(_NAMES, (has_pictures, f"needs {need}"))

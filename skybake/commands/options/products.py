@@ -38,7 +38,7 @@ product_options = options_together(
         metavar="FILE.webp",
         type=click.Path(path_type=Path),
         callback=values.with_suffix(".webp", ".gif"),
-        help="Write an animated picture, .webp or .gif; needs pip install 'skybake[animate]'.",
+        help="Write an animated picture, .webp or .gif; needs pip install Pillow.",
     ),
     click.option(
         "--fps",

@@ -7,20 +7,26 @@ from typing import TYPE_CHECKING
 import click
 
 from skybake.commands.options import values
-from skybake.commands.options.place import place_from_options, place_needs, place_options
+from skybake.commands.options.emit import remember
+from skybake.commands.options.place import (
+    day_from_options,
+    place_from_options,
+    place_needs,
+    place_options,
+)
 from skybake.commands.options.rules import Needs, options_together, usage_faults
 
 if TYPE_CHECKING:
     from skybake.ephemeris.moment import Moment, TimeSpan
 
-_HOW = ("zone", "day", "solar_longitude", "refraction")
+_HOW = ("zone", "solar_longitude", "refraction")
 
 moment_options = options_together(
     click.option(
         "--time",
         metavar="TIME",
         help="Put the sun where it is at --lat and --lon: 2026-06-21T04:00Z, or sunset+10min; "
-        "on Mars at --site, or 16:30 with --ls.",
+        "on Mars at --site; with --ls 16:30 or sunset.",
     ),
     place_options,
 )
@@ -31,7 +37,7 @@ span_options = options_together(
         "start",
         metavar="TIME",
         help="Put the sun where it is at --lat and --lon from here on: 2026-06-21T04:00Z, or "
-        "sunrise-1h; on Mars at --site, or 04:00 with --ls.",
+        "sunrise-1h; on Mars at --site; with --ls 04:00 or sunrise.",
     ),
     click.option("--to", "end", metavar="TIME", help="Time of the last frame."),
     click.option(
@@ -67,7 +73,13 @@ def moment_from_options(context: click.Context) -> Moment | None:
 
     place = place_from_options(context, "--time")
     with usage_faults(context):
-        return sun_at(options["time"], place, **{name: options[name] for name in _HOW})
+        return sun_at(
+            options["time"],
+            place,
+            altitude=options["altitude"],
+            day=day_from_options(context, place),
+            **{name: options[name] for name in _HOW},
+        )
 
 
 def span_needs(context: click.Context) -> Needs:
@@ -99,5 +111,9 @@ def span_from_options(context: click.Context) -> TimeSpan | None:
     from skybake.ephemeris.moment import TimeSpan
 
     place = place_from_options(context, "--from")
+    day = day_from_options(context, place)
+    if day is not None:
+        # Other machines shall bake the same day tomorrow.
+        remember(context, "day", str(day))
     names = ("start", "end", "every", *_HOW)
-    return TimeSpan(place=place, **{name: options[name] for name in names})
+    return TimeSpan(place=place, day=day, **{name: options[name] for name in names})

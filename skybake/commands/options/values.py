@@ -21,19 +21,23 @@ from skybake.sequence.frames import parse_frames
 from skybake.sequence.ramp import Ramp
 from skybake.units import parse_angle, parse_duration, parse_length
 
-PROJECTIONS = ("equirect", "cubemap", "fisheye", "perspective")
+PROJECTIONS = ("equirect", "cubemap", "fisheye", "perspective", "angular", "octahedral")
 PROJECTIONS_WITH = {
+    "equirect_rows": ("equirect",),
     "cube_layout": ("cubemap",),
     "fov": ("fisheye", "perspective"),
     "look": ("fisheye", "perspective"),
 }
-CUBE_LAYOUTS = ("faces", "cross", "exr")
+EQUIRECT_ROWS = ("centres", "poles")
+CUBE_LAYOUTS = ("faces", "cross", "vertical-cross", "exr")
 COLOUR_SPACES = ("lin_rec709", "acescg", "lin_rec2020", "lin_p3d65", "aces2065-1", "xyz")
 UNITS = ("ev15", "nits")
 PIXELS = ("auto", "half", "float")
 SUN_DISCS = ("include", "exclude", "only")
 METHODS = ("full", "hillaire", "march")
-VIEWS = ("aces2", "aces1")
+VIEWS = ("aces1", "aces2")
+COLDEST, HOTTEST = 1000.0, 25_000.0
+DAYS_FROM_TODAY = {"yesterday": -1, "today": 0, "tomorrow": 1}
 
 Paths = TypeVar("Paths", Path | None, tuple[Path, ...])
 
@@ -41,7 +45,15 @@ Paths = TypeVar("Paths", Path | None, tuple[Path, ...])
 _RIGHT_ANGLE = math.pi / 2 + 1e-9
 
 _MOST_TURNS = 1000
+_WIDEST = math.radians(170.0)
+_LARGEST_DISC = math.radians(20.0) + 1e-9
+_STRONGEST = 1e6
 _FASTEST = 1000.0
+
+_PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".gif", ".tif", ".tiff")
+
+# As of star.distance_au in presets. [au]
+_NEAREST, _FARTHEST = 1e-3, 1e5
 
 # Click shows the message of a click.BadParameter, but only the value of a ValueError.
 
@@ -86,12 +98,29 @@ def solar_longitude(text: str) -> float:
     return angle
 
 
-def day(text: str) -> date:
-    """Read a date such as ``2026-06-21``."""
+def sun_distance(text: str) -> float | str:
+    """Read a distance in au, ``mean`` or ``date``."""
+    if text in {"mean", "date"}:
+        return text
+    try:
+        distance = float(text.strip().casefold().removesuffix("au"))
+    except ValueError:
+        distance = math.nan
+    if not _NEAREST <= distance <= _FARTHEST:
+        raise click.BadParameter(
+            f"must be mean, date or a number of au from {_NEAREST:g} to {_FARTHEST:g}, got {text!r}"
+        )
+    return distance
+
+
+def day(text: str) -> date | str:
+    """Read a date such as ``2026-06-21``, or a key of `DAYS_FROM_TODAY`."""
+    if text.lower() in DAYS_FROM_TODAY:
+        return text.lower()
     if re.fullmatch(r"\d{4}-\d\d-\d\d", text, re.ASCII):
         with suppress(ValueError):
             return date.fromisoformat(text)
-    raise click.BadParameter(f"must be a date such as 2026-06-21, got {text!r}")
+    raise click.BadParameter(f"must be a date such as 2026-06-21, or today, got {text!r}")
 
 
 def length(text: str) -> float:
@@ -110,7 +139,9 @@ def altitude(text: str) -> float:
 def size(text: str) -> tuple[int, ...]:
     """Read width and height, or an edge: ``4096x2048``, ``1024``."""
     if not re.fullmatch(r"\d{1,9}(x\d{1,9})?", text, re.ASCII):
-        raise click.BadParameter(f"must be such as 4096x2048, or 1024 for a cubemap, got {text!r}")
+        raise click.BadParameter(
+            f"must be such as 4096x2048, or 1024 for a map 2:1 or a cubemap, got {text!r}"
+        )
     return tuple(int(number) for number in text.split("x"))
 
 
@@ -120,6 +151,27 @@ def field_of_view(text: str) -> float:
     if not angle > 0.0:
         raise click.BadParameter(f"must be greater than 0deg, got {text}")
     return angle
+
+
+def disc_diameter(text: str) -> float:
+    """Read an angle greater than 0deg, at most 20deg. [rad]"""
+    angle = _parse(text, parse_angle)
+    if not 0.0 < angle <= _LARGEST_DISC:
+        raise click.BadParameter(f"must be greater than 0deg and at most 20deg, got {text}")
+    return angle
+
+
+def strength(text: str) -> float:
+    """Read a factor greater than 0, at most a million."""
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not 0.0 < number <= _STRONGEST:
+        raise click.BadParameter(
+            f"must be a number greater than 0 and at most {_STRONGEST:g}, got {text!r}"
+        )
+    return number
 
 
 def look(text: str) -> tuple[float, float]:
@@ -151,6 +203,34 @@ def sequence_exposure(text: str) -> float | str:
     return "auto" if number is None else number
 
 
+def white_balance(text: str) -> float | str:
+    """Read ``auto``, ``none`` or a colour temperature such as ``5500K``. [K]"""
+    if text in {"auto", "none"}:
+        return text
+    try:
+        kelvin = float(text.removesuffix("K"))
+    except ValueError:
+        kelvin = math.nan
+    if not COLDEST <= kelvin <= HOTTEST:
+        raise click.BadParameter(
+            f"must be auto, none or a temperature from {COLDEST:g}K to {HOTTEST:g}K, got {text!r}"
+        )
+    return kelvin
+
+
+def shot(text: str) -> tuple[float, float, float]:
+    """Read a compass bearing, an elevation and a field of view with commas between. [rad]"""
+    parts = text.split(",")
+    if len(parts) != 3:
+        raise click.BadParameter(f"must be AZIMUTH,ELEVATION,FOV such as 180,10,50, got {text!r}")
+    fov = field_of_view(parts[2])
+    if fov > _WIDEST:
+        raise click.BadParameter(
+            f"must have a field of view of at most {math.degrees(_WIDEST):g}deg, got {parts[2]}"
+        )
+    return bearing(parts[0]), elevation(parts[1]), fov
+
+
 def frame_rate(text: str) -> float:
     """Read frames per second, greater than 0."""
     try:
@@ -171,14 +251,21 @@ def ramp(read: Callable[[str], float]) -> Callable[[str], Ramp]:
         if "..." in text:
             raise click.BadParameter(f"must have two dots between two values, got {text}")
         first, dots, last = text.partition("..")
-        found = Ramp(read(first), read(last if dots else first))
         unit = last.lstrip("+-.0123456789 ")
-        # In 5..10km users mean kilometres, but a bare 5 is metres.
-        if unit and first.strip()[-1].isdigit() and read(first + unit) != found.first:
+        # In 1..2rad users mean radians, but a bare 1 is in degrees.
+        if unit and first.strip()[-1:].isdigit() and not _is_same(read, first, first + unit):
             raise click.BadParameter(f"must have a unit on both sides, got {text}")
-        return found
+        return Ramp(read(first), read(last if dots else first))
 
     return read_ramp
+
+
+def _is_same(read: Callable[[str], float], text: str, other: str) -> bool:
+    """Whether two texts mean the same; one that means nothing does not."""
+    try:
+        return read(text) == read(other)
+    except click.BadParameter:
+        return False
 
 
 _NUMBER = r"[+-]?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?"
@@ -222,12 +309,16 @@ def with_suffix(
 ) -> Callable[[click.Context, click.Parameter, Paths], Paths]:
     """Return a callback of an option that checks the suffix of its path or paths."""
 
+    def is_map(path: Path) -> bool:
+        return ".exr" in suffixes and path.suffix.lower() in _PICTURES
+
     def check(context: click.Context, option: click.Parameter, value: Paths) -> Paths:
         for path in value if isinstance(value, tuple) else (value,):
             if path is not None and path.suffix.lower() not in suffixes:
                 known = " or ".join(suffixes)
+                hint = "; a picture to look at is written by --preview" if is_map(path) else ""
                 raise click.BadParameter(
-                    f"{path}: suffix must be {known}, got {path.suffix!r}", context, option
+                    f"{path}: suffix must be {known}, got {path.suffix!r}{hint}", context, option
                 )
         return value
 
@@ -236,7 +327,7 @@ def with_suffix(
 
 def _hemisphere(text: str, positive: str, negative: str) -> float:
     """Read an angle that may end in the letter of a hemisphere instead of having a sign. [rad]"""
-    letter = text.strip()[-1:]
+    letter = text.strip()[-1:].upper()
     if letter not in (positive, negative):
         return _parse(text, parse_angle)
     angle = _parse(text.strip()[:-1], parse_angle)

@@ -1,4 +1,4 @@
-"""Lines on standard error about what takes long."""
+"""Lines on standard error about what takes long, and what to know of a result."""
 
 from __future__ import annotations
 
@@ -21,6 +21,11 @@ def announce_kernels() -> None:
 
     if not is_warm():
         notice("compiling kernels, once for this version")
+
+
+def warn(line: str) -> None:
+    """Print what a user should know of a result."""
+    notice(f"warning: {line}")
 
 
 def notice(line: str) -> None:

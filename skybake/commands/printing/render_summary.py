@@ -3,22 +3,28 @@
 from __future__ import annotations
 
 import json
+import math
 from typing import TYPE_CHECKING, Any
 
 import click
+
+from skybake.constants import ASTRONOMICAL_UNIT
 
 if TYPE_CHECKING:
     from skybake.baking import Baked
     from skybake.ephemeris.moment import Moment
     from skybake.image.settings import MapSettings
+    from skybake.preset import Planet
 
 
 def print_summary(baked: Baked, seconds: float) -> None:
     """Print files and illuminances, human-readable."""
     for path in baked.files:
         click.echo(path)
-    if baked.preview is not None:
-        click.echo(f"{baked.preview}  exposed for EV {baked.preview_ev:.2f}")
+    if baked.preview is not None and baked.preview_ev is not None:
+        from skybake.commands.printing.pictures import picture_line
+
+        click.echo(picture_line(baked.preview, baked.preview_ev, baked.preview_white))
     click.echo(
         f"sun {baked.direct_illuminance:.5g} lx ({baked.direct_normal_illuminance:.5g} lx facing "
         f"it), sky {baked.sky_illuminance:.5g} lx on the horizontal; "
@@ -29,21 +35,27 @@ def print_summary(baked: Baked, seconds: float) -> None:
 
 
 def print_json(
-    baked: Baked, preset: str, settings: MapSettings, seconds: float, when: Moment | None
+    baked: Baked, planet: Planet, settings: MapSettings, seconds: float, when: Moment | None
 ) -> None:
     """Print one JSON object on one line."""
-    click.echo(json.dumps(result(baked, preset, settings, seconds, when)))
+    click.echo(json.dumps(result(baked, planet, settings, seconds, when)))
 
 
 def result(
-    baked: Baked, preset: str, settings: MapSettings, seconds: float, when: Moment | None
+    baked: Baked, planet: Planet, settings: MapSettings, seconds: float, when: Moment | None
 ) -> dict[str, Any]:
     """Return what ``--json`` prints, see docs/cli.md."""
+    from skybake.optics.spectrum import star_at
+
+    lighting = settings.lighting
+    star = star_at(planet.star, lighting.sun_distance)
     return {
         "files": [str(path) for path in baked.files],
-        "preset": preset,
+        "preset": planet.name,
         "time": None if when is None else when.attributes.get("skybake:time"),
         "sun_direction": list(baked.sun_direction),
+        "sun_distance_au": star.distance / ASTRONOMICAL_UNIT,
+        "sun_angular_diameter_deg": math.degrees(lighting.sun_size or 2.0 * star.angular_radius),
         "direct_illuminance_lux": baked.direct_illuminance,
         "direct_normal_illuminance_lux": baked.direct_normal_illuminance,
         "sky_illuminance_lux": baked.sky_illuminance,
@@ -52,7 +64,9 @@ def result(
         "colorspace": settings.encoding.colorspace,
         "pixel": baked.pixel,
         "clamped": baked.clamped,
+        "warnings": list(baked.warnings),
         "preview": None if baked.preview is None else str(baked.preview),
         "preview_ev": baked.preview_ev,
+        "preview_white": None if baked.preview_white is None else list(baked.preview_white),
         "seconds": round(seconds, 3),
     }

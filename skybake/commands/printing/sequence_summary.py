@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from skybake.commands.printing.notices import notice
+from skybake.commands.printing.notices import notice, warn
 
 if TYPE_CHECKING:
     from skybake.sequence.plan import Plan
@@ -43,16 +43,27 @@ def print_summary(result: SequenceResult, written: Sequence[Path], seconds: floa
 
 def print_json(result: SequenceResult, written: Sequence[Path], seconds: float) -> None:
     """Print one JSON object on one line, see docs/cli.md."""
+    from skybake.sequence.frames import format_frames
+
     baked, skipped = _counts(result)
     summary = {
         "baked": baked,
         "skipped": skipped,
         "failed": {str(number): message for number, message in result.failures.items()},
+        "warnings": {text: format_frames(numbers) for text, numbers in _warnings(result).items()},
         "files": [str(path) for outcome in result.outcomes for path in outcome.files],
         "written": [str(path) for path in written],
         "seconds": round(seconds, 3),
     }
     click.echo(json.dumps(summary))
+
+
+def print_warnings(result: SequenceResult) -> None:
+    """Print what a user should know of frames, with their numbers."""
+    from skybake.sequence.frames import format_frames
+
+    for text, numbers in _warnings(result).items():
+        warn(f"frames {format_frames(numbers)}: {text}")
 
 
 def print_failures(result: SequenceResult, *, openjd: bool) -> None:
@@ -65,6 +76,15 @@ def print_failures(result: SequenceResult, *, openjd: bool) -> None:
     notice(line)
     if openjd:
         click.echo(f"openjd_fail: {line}")
+
+
+def _warnings(result: SequenceResult) -> dict[str, list[int]]:
+    """Return the frames of each warning."""
+    found: dict[str, list[int]] = {}
+    for outcome in result.outcomes:
+        for text in outcome.warnings:
+            found.setdefault(text, []).append(outcome.number)
+    return found
 
 
 def _counts(result: SequenceResult) -> tuple[int, int]:

@@ -1,0 +1,102 @@
+"""What a user should know of a map that was baked: what its file loses, or that it is black."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from skybake.errors import OutputError
+from skybake.image.scene import Scene
+from skybake.sky.closure import closure_warning
+
+HALF_MOST = 65504.0
+"""Largest half float, and what programs make of all that is larger."""
+
+COARSE = 0.01
+"""Relative error of a value beyond which it counts as lost."""
+
+# Halves below 2**-14 are multiples of 2**-24.
+_DIM = 2.0**-25 / COARSE
+_ZERO = 2.0**-25
+
+_WARNED_SHARE, _MOST_SHARE = 1e-3, 0.5
+
+_RADIANCE = (
+    f"values beyond {HALF_MOST:g} are lost in programs that hold a .hdr in half floats, such as "
+    "three.js; let 1.0 stand for more light, as --units ev15 does, draw the sun's disc soft, or "
+    "leave it out"
+)
+
+
+class HalfLoss:
+    """Counts values that half floats hold badly, as they are written.
+
+    Attributes
+    ----------
+    lit, coarse, zero : int
+        Values other than 0; those of them whose error in half is above `COARSE`, and those
+        that become 0.
+    largest : float
+        Of all magnitudes.
+    """
+
+    def __init__(self) -> None:
+        self.lit = self.coarse = self.zero = 0
+        self.largest = 0.0
+
+    def add(self, rows: npt.NDArray[np.float32]) -> None:
+        """Count the values of a band of rows."""
+        magnitude = np.abs(rows)
+        self.largest = max(self.largest, float(magnitude.max(initial=0.0)))
+        self.lit += int(np.count_nonzero(magnitude))
+        dim = magnitude[magnitude < _DIM]
+        self.coarse += int(np.count_nonzero(dim))
+        self.zero += int(np.count_nonzero(dim[dim <= _ZERO]))
+
+    def warning(self, path: Path) -> str | None:
+        """Say what is lost of a file, or return None if that is little.
+
+        A Radiance picture holds all, but programs that read it may not.
+
+        Raises
+        ------
+        OutputError
+            If more than half of the values are.
+        """
+        if path.suffix.lower() == ".hdr":
+            return _RADIANCE if self.largest > HALF_MOST else None
+        share = self.coarse / max(self.lit, 1)
+        if share > _MOST_SHARE:
+            raise OutputError(
+                f"{path}: half floats must hold most values within {COARSE:.0%}, got {share:.0%} "
+                f"beyond and {self.zero / self.lit:.0%} as 0; use float, or let 1.0 stand for less "
+                "light"
+            )
+        if share <= _WARNED_SHARE:
+            return None
+        return (
+            f"half floats hold the darkest values with errors above {COARSE:.0%}; use float, or "
+            "let 1.0 stand for less light"
+        )
+
+
+def scene_warnings(scene: Scene, peak: float) -> list[str]:
+    """Return what is known of a map before it is written.
+
+    Parameters
+    ----------
+    scene : Scene
+        What it shows.
+    peak : float
+        Of the sun's disc.
+    """
+    found = []
+    if scene.sky.method == "hillaire":
+        found.append(closure_warning(scene.sky.medium))
+    if scene.layer_names == ("sun",) and peak == 0.0:
+        found.append(
+            "the map is black: no light of the sun's disc, the only thing in it, arrives here"
+        )
+    return [one for one in found if one is not None]

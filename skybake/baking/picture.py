@@ -1,0 +1,77 @@
+"""The preview of a map that is baked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import ExitStack
+from functools import partial
+from pathlib import Path
+from typing import NamedTuple
+
+from skybake.colour.white_balance import chromaticity
+from skybake.formats.preview import open_preview
+from skybake.formats.whole_files import WholeFiles
+from skybake.image.meter import scene_white
+from skybake.image.picture import picture_ev, picture_projection, show_scene
+from skybake.image.picture_settings import PictureSettings
+from skybake.image.picture_texts import preview_texts
+from skybake.image.scene import Scene
+
+
+class OpenPicture(NamedTuple):
+    """A preview that is to be drawn.
+
+    Attributes
+    ----------
+    ev : float
+        Its exposure value.
+    white : tuple of float or None
+        CIE xy of the light that becomes white; None for D65.
+    draw : callable
+        Makes the picture.
+    """
+
+    ev: float
+    white: tuple[float, float] | None
+    draw: Callable[[], None]
+
+
+def open_picture(
+    scene: Scene, path: Path, settings: PictureSettings, files: WholeFiles, stack: ExitStack
+) -> OpenPicture:
+    """Open the preview of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is shown.
+    path : Path
+        ``.png``.
+    settings : PictureSettings
+        How it is shown.
+    files : WholeFiles
+        The files that it is to appear with.
+    stack : ExitStack
+        Closes the file.
+
+    Raises
+    ------
+    OutputError
+        If it cannot be written.
+    """
+    ev, white = picture_ev(scene, settings), scene_white(scene, settings)
+    shown = picture_projection(scene.settings.view.projection, settings.shot)
+    show = stack.enter_context(
+        open_preview(
+            path,
+            view=settings.view,
+            max_width=shown.canvases()[0].width,
+            texts=preview_texts(scene.planet, scene.settings, ev, settings),
+            files=files,
+        )
+    )
+    return OpenPicture(
+        ev,
+        None if white is None else chromaticity(white),
+        partial(show_scene, scene, show, ev, white, shown),
+    )

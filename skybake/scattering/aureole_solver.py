@@ -1,0 +1,296 @@
+"""Solving for the aureole of bent paths, at the nodes of the diffuse field."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from skybake.jit.arguments import flatten
+from skybake.jit.kernel import kernel
+from skybake.jit.workers import ALL_CPUS, Workers
+from skybake.optics.delta_m import SERIES_ORDER
+from skybake.optics.legendre import legendre_moments, legendre_polynomials
+from skybake.optics.medium import Array, altitude_nodes, pad_wavelengths, vertical_columns
+from skybake.optics.phase import eval_phase
+from skybake.scattering.aureole import (
+    ANGLES,
+    LAST_ANGLE,
+    ORDERS,
+    Aureole,
+    add_aureole,
+    allocate_aureole_scratch,
+)
+from skybake.scattering.fans import group_rays
+from skybake.scattering.field import DiffuseField
+from skybake.scattering.grid import Grid, no_field
+from skybake.scattering.harmonics import build_harmonics, harmonics_at
+from skybake.scattering.ray import trace_rays
+from skybake.scattering.tables import Atmosphere
+from skybake.scattering.transmittance import fill_sun_column
+from skybake.transport.samples import allocate_samples
+from skybake.transport.shells import altitude_shells
+from skybake.transport.trace import trace
+
+LEAST_PEAK = 0.03
+"""Share of the scattered light in a peak from which its paths matter."""
+
+RINGS = 12
+"""Angles from the sun at which light is traced."""
+
+SIDES = 3
+"""Position angles on either side of the horizon at which it is."""
+
+SERIES = 48
+"""Highest Legendre order of what a peak scatters of the difference, which is smooth."""
+
+FADES_FROM = math.radians(35.0)
+"""Angle from the sun beyond which the difference fades, so that no edge is seen at the last."""
+
+SHELLS = 20
+ARC = math.radians(1.5)
+
+
+class Directions(NamedTuple):
+    """Directions around each sun at each altitude.
+
+    Attributes
+    ----------
+    cosine, weight : ndarray, shape (ring,)
+        Cosine of the angle from the sun, and its share of d cosine.
+    position, position_weight : ndarray, shape (altitude, sun, ring, position)
+        Position angle about the sun, 0 toward the zenith, to pi; apart above and below the
+        horizon where that crosses a ring. [rad]
+    mu : ndarray, shape (altitude, sun, ring, position)
+        Cosines of the zenith angles.
+    """
+
+    cosine: Array
+    weight: Array
+    position: Array
+    position_weight: Array
+    mu: Array
+
+
+def has_aureole(atmosphere: Atmosphere) -> bool:
+    """Whether a medium has peaks whose light has to follow its true path."""
+    return bool(atmosphere.scaled.fraction.max(initial=0.0) > LEAST_PEAK)
+
+
+def solve_aureole(
+    atmosphere: Atmosphere, grid: Grid, field: DiffuseField, workers: Workers = ALL_CPUS
+) -> tuple[Aureole, DiffuseField]:
+    """Solve for the light that peaks alone have scattered, less what goes straight.
+
+    Parameters
+    ----------
+    atmosphere : Atmosphere
+        Its medium and columns.
+    grid : Grid
+        Nodes of altitude and sun.
+    field : DiffuseField
+        Of those nodes, without light.
+    workers : Workers, optional
+        Who does the work.
+
+    Returns
+    -------
+    aureole : Aureole
+        What peaks scatter of the difference.
+    moments : DiffuseField
+        Its moments, which scatter as all diffuse light does, and its irradiance of the ground.
+
+    Notes
+    -----
+    With B the sought light, S the straight one and P one more scattering in peaks on the true
+    path, D = B - S solves D = (P S - S) + P D, of which two terms of the series are kept: the
+    third changes D by 0.5 % on Mars at a dust depth of 0.5.
+    """
+    scaled = atmosphere.scaled
+    around = _directions(scaled.medium.r_bottom, grid)
+    mu_s = np.cos(grid.sun_angle)
+    radius = scaled.medium.r_bottom + np.maximum(grid.altitude, 1e-8)
+    shape = around.mu.shape
+    rays = np.stack(
+        np.broadcast_arrays(
+            radius[:, None, None, None], around.mu, mu_s[:, None, None], around.cosine[:, None]
+        ),
+        axis=-1,
+    ).reshape(len(radius), -1, 4)
+    moments = _peak_moments(atmosphere)
+    first = _peaks_of_straight(atmosphere, rays, workers).reshape(*shape, -1)
+    first -= _straight(atmosphere, grid, around, moments)[:, :, :, None]
+    first *= _fade(np.arccos(around.cosine))[:, None, None]
+    aureole = _scattered(atmosphere, grid, around, moments, first)
+    difference = first + _transport(atmosphere, aureole, field, rays, workers).reshape(first.shape)
+    return (
+        _scattered(atmosphere, grid, around, moments, difference),
+        _project(grid, around, difference, field),
+    )
+
+
+def _directions(r_bottom: float, grid: Grid) -> Directions:
+    x, share = np.polynomial.legendre.leggauss(RINGS)
+    x, share = 0.5 * (x + 1.0), 0.5 * share
+    versine = 1.0 - math.cos(LAST_ANGLE)
+    cosine, weight = 1.0 - versine * x**2, 2.0 * versine * x * share
+    mu_s, sine_s = np.cos(grid.sun_angle)[:, None], np.sin(grid.sun_angle)[:, None]
+    sine = np.sqrt(1.0 - cosine**2)
+    mu_horizon = -np.sqrt(np.maximum(1.0 - (r_bottom / (r_bottom + grid.altitude)) ** 2, 0.0))
+    crossing = (mu_horizon[:, None, None] - cosine * mu_s) / np.maximum(sine * sine_s, 1e-12)
+    edge = np.where(np.abs(crossing) < 1.0, np.arccos(np.clip(crossing, -1.0, 1.0)), math.pi / 2.0)
+    edge = edge[..., None]
+    y, share = np.polynomial.legendre.leggauss(SIDES)
+    y, share = 0.5 * (y + 1.0), 0.5 * share
+    position = np.concatenate([edge * y, edge + (math.pi - edge) * y], axis=-1)
+    mu = cosine[:, None] * mu_s[..., None] + (sine * sine_s)[..., None] * np.cos(position)
+    return Directions(
+        cosine=cosine,
+        weight=weight,
+        position=position,
+        position_weight=np.concatenate([edge * share, (math.pi - edge) * share], axis=-1),
+        mu=mu,
+    )
+
+
+def _fade(angle: Array) -> Array:
+    fading = np.clip((angle - FADES_FROM) / (LAST_ANGLE - FADES_FROM), 0.0, 1.0)
+    share: Array = np.cos(0.5 * math.pi * fading) ** 2
+    return share
+
+
+def _peak_moments(atmosphere: Atmosphere) -> Array:
+    """Legendre moments of each constituent's peak, shape (constituent, order + 1, wavelength)."""
+    scaled = atmosphere.scaled
+    moments = legendre_moments(pad_wavelengths(atmosphere.medium).phase, SERIES_ORDER)
+    moments[:, : scaled.moments.shape[1]] = scaled.fraction[:, None]
+    return moments
+
+
+def _peaks_of_straight(atmosphere: Atmosphere, rays: Array, workers: Workers) -> Array:
+    """Radiance that peaks scatter out of straight light, shape (node, ray, wavelength)."""
+    scaled = atmosphere.scaled
+    constituents = scaled.medium.phase.shape[0]
+    peaks = scaled.phase[constituents:]
+    coarse = atmosphere._replace(
+        shells=altitude_shells(scaled.medium, SHELLS), field=no_field(scaled)
+    )
+    radiance = np.empty((*rays.shape[:2], scaled.mixture.size), np.float32)
+    for node, each in enumerate(rays):
+        light = trace_rays(coarse, *each.T, max_arc=ARC, workers=workers)
+        phase = eval_phase(peaks, each[:, 3])
+        radiance[node] = (light.single[:, constituents:] * phase).sum(axis=1)
+    return radiance
+
+
+def _straight(
+    atmosphere: Atmosphere, grid: Grid, around: Directions, moments: Array
+) -> npt.NDArray[np.float32]:
+    """Radiance of straight light around the sun, shape (altitude, sun, ring, wavelength).
+
+    What arrives by n scatterings within peaks on a depth y has the moments of a peak
+    to the power of n, weighted by y^n / n! exp(-extinction).
+    """
+    medium, scaled = pad_wavelengths(atmosphere.medium), atmosphere.scaled
+    mu_s = np.cos(grid.sun_angle)
+    columns = np.empty((grid.altitude.size, mu_s.size, medium.extinction.shape[0]))
+    radius = medium.r_bottom + np.maximum(grid.altitude, 1e-8)
+    _fill_sun_columns(atmosphere.columns, medium.r_bottom, medium.r_top, radius, mu_s, columns)
+    extinction = columns @ medium.extinction
+    depth = columns @ scaled.scattering
+    share = vertical_columns(medium)[:, None] * scaled.scattering
+    share /= np.maximum(share.sum(axis=0), 1e-300)
+    mean = np.einsum("cw,clw->lw", share, moments)
+    degree = np.arange(SERIES_ORDER + 1)
+    polynomials = legendre_polynomials(around.cosine, SERIES_ORDER)
+    polynomials *= ((2 * degree + 1) / (4.0 * math.pi))[:, None]
+    straight = np.empty((*depth.shape[:2], around.cosine.size, depth.shape[2]), np.float32)
+    for i in range(len(depth)):
+        series = np.exp(depth[i] * mean[:, None] - extinction[i]) - np.exp(-extinction[i])
+        straight[i] = np.einsum("lq,ljw->jqw", polynomials, series, optimize=True)
+    return straight
+
+
+@kernel
+def _fill_sun_columns(columns, r_bottom, r_top, radius, mu_s, out):
+    """Write the columns toward each sun from each altitude, 0 where it has set."""
+    for i in range(radius.size):
+        for j in range(mu_s.size):
+            fill_sun_column(columns, r_bottom, r_top, radius[i], mu_s[j], out[i, j])
+
+
+def _scattered(
+    atmosphere: Atmosphere, grid: Grid, around: Directions, moments: Array, radiance: Array
+) -> Aureole:
+    """Scatter light once in the peaks, in each altitude's mixture of constituents."""
+    scaled = atmosphere.scaled
+    medium = scaled.medium
+    fine = altitude_nodes(medium.r_bottom, medium.r_top)
+    density = np.stack([np.interp(grid.altitude, fine, each) for each in medium.density.T], axis=1)
+    share = density[:, :, None] * scaled.scattering + 1e-30 * scaled.scattering
+    share /= np.maximum(share.sum(axis=1, keepdims=True), 1e-300)
+    harmonics = build_harmonics(SERIES)
+    at_rings = harmonics_at(harmonics, around.cosine) * around.weight[:, None]
+    angles = np.linspace(0.0, LAST_ANGLE, ANGLES)
+    at_angles = harmonics_at(harmonics, np.cos(angles)) * _fade(angles)[:, None]
+    source = np.empty((*radiance.shape[:2], ANGLES, ORDERS, radiance.shape[-1]), np.float32)
+    for m in range(ORDERS):
+        order = harmonics.azimuthal == m
+        degree = harmonics.degree[order]
+        term = np.cos(m * around.position) * around.position_weight * 2.0
+        of_rings = np.einsum("ijqp,ijqpw->ijqw", term, radiance, optimize=True)
+        each = np.einsum(
+            "al,clw,ql->caqw",
+            at_angles[:, order],
+            moments[:, degree],
+            at_rings[:, order],
+            optimize=True,
+        )
+        for i in range(len(radiance)):
+            mixed = np.einsum("cw,caqw->aqw", share[i], each)
+            source[i, :, :, m] = np.einsum("aqw,jqw->jaw", mixed, of_rings[i], optimize=True)
+    return Aureole(source.reshape(*source.shape[:3], -1))
+
+
+def _transport(
+    atmosphere: Atmosphere, aureole: Aureole, field: DiffuseField, rays: Array, workers: Workers
+) -> npt.NDArray[np.float32]:
+    """Radiance that arrives of what an aureole's peaks scatter, shape (ray, wavelength)."""
+    scaled = atmosphere.scaled
+    shells = altitude_shells(scaled.medium, SHELLS)
+    fans = group_rays(rays.reshape(-1, 4))
+    out = np.zeros((len(fans.rays), scaled.mixture.size), np.float32)
+    flat = [flatten(each) for each in (aureole, field, scaled, fans)]
+
+    def work(begin: int, end: int) -> None:
+        samples = allocate_samples(scaled.medium)
+        filled, scratch = flatten(samples), flatten(allocate_aureole_scratch(scaled))
+        while begin < end:
+            stop = trace(scaled.medium, shells, ARC, fans.starts, begin, end, filled)
+            add_aureole(*flat, begin, stop, filled, scratch, out)
+            begin = stop
+
+    workers.run_rows(len(fans.starts), work, chunk=1024)
+    return out
+
+
+def _project(grid: Grid, around: Directions, radiance: Array, field: DiffuseField) -> DiffuseField:
+    """Moments about the zenith of light around the sun."""
+    solid_angle = 2.0 * around.weight[:, None] * around.position_weight
+    mu_s, sine_s = np.cos(grid.sun_angle), np.sin(grid.sun_angle)
+    moments = np.empty_like(field.radiance)
+    for i in range(len(radiance)):
+        mu = around.mu[i]
+        sines = np.sqrt(np.maximum(1.0 - mu**2, 0.0)) * sine_s[:, None, None]
+        across = (around.cosine[:, None] - mu * mu_s[:, None, None]) / np.maximum(sines, 1e-12)
+        azimuth = np.arccos(np.clip(across, -1.0, 1.0))
+        for j in range(mu_s.size):
+            basis = harmonics_at(field.harmonics, mu[j].ravel())
+            basis *= np.cos(np.outer(azimuth[j].ravel(), field.harmonics.azimuthal))
+            basis *= solid_angle[i, j].reshape(-1, 1)
+            moments[i, j] = basis.T @ radiance[i, j].reshape(len(basis), -1)
+    flux = solid_angle[0] * np.maximum(around.mu[0], 0.0)
+    ground = np.einsum("jqp,jqpw->jw", flux, radiance[0], optimize=True)
+    return field._replace(radiance=moments, ground=ground.astype(float))
