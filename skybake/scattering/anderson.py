@@ -8,16 +8,22 @@ import numpy as np
 
 from skybake.optics.medium import Array
 
-MEMORY = 3
+MEMORY = 5
 
 
 class Anderson:
-    """Anderson's mixing of the last passes, for many unknown vectors at once.
+    """Anderson's mixing of the last passes, for several independent systems at once.
 
     Parameters
     ----------
-    columns : int
-        Vectors, each of which is mixed with its own weights.
+    systems : int
+        How many, each of which is mixed with its own weights. Row i of a state belongs to
+        system i modulo their number.
+
+    Notes
+    -----
+    Rows that depend on each other must share weights: with weights of their own, mixed rows are
+    not what one pass makes of mixed rows, and the iteration need not converge.
 
     References
     ----------
@@ -25,13 +31,13 @@ class Anderson:
     49, 2011, algorithm AA in the difference form.
     """
 
-    def __init__(self, columns: int) -> None:
-        self._columns = columns
+    def __init__(self, systems: int) -> None:
+        self._systems = systems
         self._states: list[Array] = []
         self._images: list[Array] = []
 
     def step(self, state: Array, image: Array) -> Array:
-        """Next state from a state and its image under one pass, each (column, unknown)."""
+        """Next state from a state and its image under one pass, each (row, unknown)."""
         self._states.append(state)
         self._images.append(image)
         if len(self._states) == 1:
@@ -40,11 +46,19 @@ class Anderson:
         residuals = [g - x for x, g in zip(self._states, self._images, strict=True)]
         changes = np.stack([b - a for a, b in pairwise(residuals)], axis=1)
         moves = np.stack([b - a for a, b in pairwise(self._images)], axis=1)
-        normal = (changes @ changes.transpose(0, 2, 1)).astype(float)
+        normal = self._add_rows(changes @ changes.transpose(0, 2, 1))
         trace = np.trace(normal, axis1=1, axis2=2)[:, None, None]
         # Nearly parallel residuals leave the weights undetermined; this keeps them small.
-        normal = normal + (1e-7 * trace + 1e-36) * np.eye(normal.shape[1])
-        right = (changes @ residuals[-1][:, :, None]).astype(float)
+        normal = normal + (1e-10 * trace + 1e-36) * np.eye(normal.shape[1])
+        right = self._add_rows(changes @ residuals[-1][:, :, None])
         weights = np.linalg.solve(normal, right).astype(image.dtype)
-        mixed: Array = image - (moves.transpose(0, 2, 1) @ weights)[:, :, 0]
+        shared = np.tile(weights, (len(image) // self._systems, 1, 1))
+        mixed: Array = image - (moves.transpose(0, 2, 1) @ shared)[:, :, 0]
         return mixed
+
+    def _add_rows(self, products: Array) -> Array:
+        """Sum products of rows over each system."""
+        total: Array = products.reshape(-1, self._systems, *products.shape[1:]).sum(
+            axis=0, dtype=float
+        )
+        return total

@@ -21,6 +21,10 @@ ANGLE_BINS = 2048
 
 TWILIGHT_SLOPE = 40.0
 TWILIGHT_ONSET = math.radians(5.0)
+TWILIGHT_END = math.radians(30.0)
+"""Depression of the sun at which it is night. Beyond it nodes are so far apart that the decline
+from one to the next would magnify the light of a planet whose night is not so dark, one with
+an atmosphere as high as its radius, by 1000 with every scattering. [rad]"""
 
 
 class DiffuseField(NamedTuple):
@@ -157,8 +161,8 @@ def fast_acos(x):
 
 @kernel
 def log_twilight(angle):
-    """Logarithm of how dark twilight is, roughly: 0 by day, then falling by 0.7 a degree."""
-    below = angle - 0.5 * math.pi
+    """Logarithm of how dark it is, roughly: 0 by day, falling by 0.7 a degree until night."""
+    below = min(angle - 0.5 * math.pi, TWILIGHT_END)
     if below <= 0.0:
         return 0.0
     if below < TWILIGHT_ONSET:

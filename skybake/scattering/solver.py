@@ -45,6 +45,10 @@ COARSE_TOLERANCE = 1e-3
 LEAST_CHANGE = 3e-5
 """Relative change below which single precision tells no more."""
 
+DARKEST = 1e-7
+"""Of the field under the brightest sun: the least that a change is compared with. Where light falls
+faster than this from one sun to the next, rounding of the brighter is all that is left."""
+
 MAX_PASSES = 20
 MAX_COARSE_PASSES = 400
 
@@ -139,9 +143,9 @@ def _settle(
     workers: Workers,
 ) -> DiffuseField:
     """Follow light of few harmonics through all its scatterings, to a small part of `total`."""
-    mixing = Anderson(new.ground.size)
-    start, scale = _state(new), _state(total)
     wavelengths = new.ground.shape[1]
+    mixing = Anderson(wavelengths)
+    start, scale = _state(new), _state(total)
     sunlit = wavelengths * np.count_nonzero(grid.sun_angle < 0.5 * math.pi)
     state, previous, left = start, 0.0, 0.0
     for turn in range(MAX_COARSE_PASSES):
@@ -165,7 +169,10 @@ def _relative(change: Array, state: Array, grid: Grid) -> Array:
     """Relative size of a change, for each sun angle that is judged and each wavelength."""
     judged = np.repeat(grid.sun_angle < grid.last_judged, len(state) // grid.sun_angle.size)
     size = np.linalg.norm(state[judged], axis=1)
-    relative: Array = np.linalg.norm(change[judged], axis=1) / np.maximum(size, 1e-30)
+    wavelengths = len(state) // grid.sun_angle.size
+    brightest = size.reshape(-1, wavelengths).max(axis=0)
+    least = np.tile(np.maximum(DARKEST * brightest, 1e-30), len(size) // wavelengths)
+    relative: Array = np.linalg.norm(change[judged], axis=1) / np.maximum(size, least)
     return relative
 
 

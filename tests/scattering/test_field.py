@@ -63,6 +63,17 @@ def test_twilight_is_taken_to_fall_from_the_horizon_on_and_ever_steeper_then_str
     assert 0.7 < per_degree < 1.6
 
 
+@pytest.mark.parametrize("last", [118.0, 150.0, 180.0])
+def test_no_node_is_magnified_where_the_nodes_of_night_are_far_apart(last):
+    """Else light doubles with every scattering on a planet whose night is not that dark."""
+    angles = sun_angles(math.radians(last))
+    field = empty_field(keep_unscaled(plain_medium()), np.array([0.0, 100.0]), angles, 0)
+    weights = np.empty(4)
+    for angle in np.linspace(0.0, math.radians(last), 2001):
+        sun_weights(field, math.cos(angle), weights)
+        assert np.abs(weights).sum() < 2.0
+
+
 @given(st.floats(-0.45, 1.0))
 def test_sun_lies_between_the_middle_two_of_its_four_nodes(mu_s):
     weights = np.empty(4)
