@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from skybake.angles import cosine_between
-from skybake.errors import InputError
+from skybake.errors import InputError, UnsolvableError
 from skybake.image.light import light_of_scene
-from skybake.image.scene import Scene, luminous_weights
+from skybake.image.scene import DARK, ROUNDING, Scene, luminous_weights
 from skybake.image.settings import Lighting, MapSettings, View
 from skybake.optics.medium import Array
 from skybake.preset import Planet
@@ -136,7 +136,8 @@ def probe(
     Raises
     ------
     SkybakeError
-        If a value is out of range or the preset does not cover a wavelength.
+        If a value is out of range, the preset does not cover a wavelength, or light is negative
+        beyond rounding.
     """
     fast = "full" if method == REFERENCE else method
     sky = Sky(
@@ -182,7 +183,20 @@ def _radiance(
     sun_zenith = sky.source.zenith
     mu, sine = np.cos(directions.zenith), np.sin(directions.zenith)
     nu = cosine_between(mu, sine, math.cos(sun_zenith), math.sin(sun_zenith), directions.azimuth)
-    return sky.radiance_per_irradiance(mu, nu), None
+    return _without_rounding(sky.radiance_per_irradiance(mu, nu)), None
+
+
+def _without_rounding(radiance: Array) -> Array:
+    """Take radiance per unit irradiance that rounding left below 0 for 0; refuse what is less."""
+    if not np.isfinite(radiance).all():
+        raise UnsolvableError(f"light: radiance must be finite, got {radiance.sum()}")
+    least, most = float(radiance.min()), float(radiance.max())
+    if least < -max(ROUNDING * most, DARK / math.pi):
+        raise UnsolvableError(
+            f"light: radiance per irradiance must be at least 0 beside a brightest one of "
+            f"{most:.3g} sr-1, got {least:.3g}; the atmosphere is beyond what the method resolves"
+        )
+    return np.maximum(radiance, 0.0)
 
 
 def _colour(

@@ -1,5 +1,5 @@
 """Every world within the documented ranges has light that is finite and at least 0, or is refused
-in a line."""
+at once for a documented limit."""
 
 import math
 import warnings
@@ -7,20 +7,25 @@ import warnings
 import numpy as np
 import pytest
 
-from skybake.errors import PresetWarning, SkybakeError
+from skybake.errors import PresetWarning, SkybakeError, UnsolvableError
 from skybake.image.scene import Scene
 from skybake.image.settings import map_settings
+from skybake.optics.delta_m import scale_medium
+from skybake.optics.medium import build_medium
 from skybake.preset import load_preset
 from skybake.preset.toml import toml_text
 from skybake.projection.equirect import column_bearings, row_zeniths
+from skybake.scattering.grid import ORDER
+from skybake.scattering.limits import check_medium
 from tests.baking.random_worlds import random_world
 
 ROWS = 16
+WAVELENGTHS = np.array([450.0, 550.0, 650.0])
 ELEVATIONS = (60.0, 5.0, -6.0)
 
-QUICK = (0, 3, 5, 7, 8)
+QUICK = (0, 3, 4, 5, 7, 8)
 """Thin ones, which are solved in a second or two: with asymmetries at both ends of their range, in
-the planet's shadow, and beside its edge."""
+the planet's shadow, and beside its edge, and with air as high as the planet's radius."""
 
 
 def sky(planet, elevation):
@@ -33,31 +38,65 @@ def sky(planet, elevation):
     return pixels @ scene.luminance, scene.sky_illuminance()
 
 
-def check_light(folder, seed):
+def load_world(folder, seed):
     path = folder / "world.toml"
     path.write_text(toml_text(random_world(seed)), encoding="utf-8")
-    refusal = None
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PresetWarning)
-        try:
-            planet = load_preset(path)
-            light = [sky(planet, elevation) for elevation in ELEVATIONS]
-        except SkybakeError as error:
-            refusal = str(error)
-    if refusal is not None:
-        assert len(refusal.splitlines()) == 1
+        return load_preset(path)
+
+
+def refusal_at_once(planet):
+    """What `skybake presets check` says of a world that cannot be rendered, or None."""
+    try:
+        medium = build_medium(planet, WAVELENGTHS)
+        check_medium(scale_medium(medium, ORDER))
+    except SkybakeError as error:
+        return str(error)
+    return None
+
+
+def check_light(folder, seed):
+    planet = load_world(folder, seed)
+    if refusal_at_once(planet) is not None:
         return
-    for luminance, illuminance in light:
+    for elevation in ELEVATIONS:
+        luminance, illuminance = sky(planet, elevation)
         assert luminance.min() >= -1e-6 * luminance.max()
         assert illuminance >= 0.0
 
 
+def test_few_random_worlds_are_refused_and_at_once_for_their_optical_depth(tmp_path):
+    refusals = [refusal_at_once(load_world(tmp_path, seed)) for seed in range(200)]
+    told = [refusal for refusal in refusals if refusal is not None]
+    assert 0 < len(told) <= 0.05 * len(refusals)
+    assert [refusal for refusal in told if "optical depth of the atmosphere" not in refusal] == []
+
+
 @pytest.mark.parametrize("seed", QUICK)
-def test_a_random_world_has_good_light_or_is_refused_in_a_line(tmp_path, seed):
+def test_a_random_world_has_good_light_unless_it_is_refused_at_once(tmp_path, seed):
     check_light(tmp_path, seed)
 
 
+UNRESOLVED = (18, 22, 34, 35)
+"""Refused for light below 0: of shells in the sky of a planet no larger than its atmosphere, whose
+edges the table of a sky does not resolve, and in twilight that falls faster than by a node."""
+
+
 @pytest.mark.nightly
-@pytest.mark.parametrize("seed", range(200))
-def test_each_of_two_hundred_random_worlds_has_good_light_or_is_refused(tmp_path, seed):
+@pytest.mark.parametrize(
+    "seed",
+    [
+        pytest.param(
+            seed,
+            marks=[pytest.mark.xfail(raises=UnsolvableError, strict=True)]
+            if seed in UNRESOLVED
+            else [],
+        )
+        for seed in range(200)
+    ],
+)
+def test_each_of_two_hundred_random_worlds_has_good_light_unless_it_is_refused_at_once(
+    tmp_path, seed
+):
     check_light(tmp_path, seed)

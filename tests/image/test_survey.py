@@ -78,3 +78,17 @@ def test_a_sharp_shadow_in_thin_air_leaves_light_that_is_not_negative(tmp_path, 
     shown = made.evaluate(zenith, np.linspace(0.0, math.pi, 90)[None], 1e-9)[..., 1]
     assert shown.min() >= 0.0
     assert made.sky_illuminance() > 0.0
+
+
+def test_a_pixel_between_nodes_that_swings_below_0_beside_bright_ones_is_black(monkeypatch):
+    """The survey sees only some of the pixels that a map has."""
+    evaluate = Scene._evaluate
+
+    def swing(self, table, zenith, azimuth, footprint):
+        pixels = evaluate(self, table, zenith, azimuth, footprint)
+        if pixels.shape[0] == 1:
+            pixels *= -1.0
+        return pixels
+
+    monkeypatch.setattr(Scene, "_evaluate", swing)
+    np.testing.assert_array_equal(zenith(scene()), 0.0)
