@@ -85,9 +85,10 @@ def horizon_angles(r: float, r_bottom: float, r_top: float) -> tuple[float, floa
 def ray_azimuths(sun_elevation: float, zenith_horizon: float, *, has_aureole: bool = False) -> int:
     """How many azimuths of rays determine those of a table inside the atmosphere."""
     dip = zenith_horizon - math.pi / 2.0
+    least = RAY_AZIMUTHS_AUREOLE if has_aureole else RAY_AZIMUTHS
     if sun_elevation > TWILIGHT_ELEVATION + dip:
-        return RAY_AZIMUTHS_AUREOLE if has_aureole else RAY_AZIMUTHS
-    return RAY_AZIMUTHS_TWILIGHT if dip < HIGH_DIP else AZIMUTHS
+        return least
+    return max(least, RAY_AZIMUTHS_TWILIGHT if dip < HIGH_DIP else AZIMUTHS)
 
 
 def table_directions(
