@@ -32,9 +32,10 @@ def compile_all() -> None:
         for number, settings in enumerate(_kinds()):
             bake(planet, Path(folder) / f"{number}.exr", settings)
     medium = build_medium(planet, WAVELENGTHS)
-    # Tables that are already stored needed no kernels.
+    # Tables that are already stored needed no kernels; only dust has an aureole.
     for method in ("full", "hillaire"):
         build_atmosphere(medium, method)
+    build_atmosphere(build_medium(load_preset("mars"), WAVELENGTHS), "full")
     here = np.zeros(1)
     radiance(medium, 0.0, SMALL.lighting.sun_elevation, here, here, samples=2)
     Sky(planet, SMALL.lighting.sun_elevation).radiance(np.array([0.0, 1.0, 0.0]))

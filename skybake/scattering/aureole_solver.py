@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -28,6 +27,7 @@ from skybake.scattering.field import DiffuseField
 from skybake.scattering.grid import Grid, no_field
 from skybake.scattering.harmonics import build_harmonics, harmonics_at
 from skybake.scattering.ray import trace_rays
+from skybake.scattering.rings import Rings, fade, project_rings, rings_around
 from skybake.scattering.tables import Atmosphere
 from skybake.scattering.transmittance import fill_sun_column
 from skybake.transport.samples import allocate_samples
@@ -37,41 +37,11 @@ from skybake.transport.trace import trace
 LEAST_PEAK = 0.03
 """Share of the scattered light in a peak from which its paths matter."""
 
-RINGS = 10
-"""Angles from the sun at which light is traced."""
-
-SIDES = 2
-"""Position angles on either side of the horizon at which it is."""
-
 SERIES = 48
 """Highest Legendre order of what a peak scatters of the difference, which is smooth."""
 
-FADES_FROM = math.radians(35.0)
-"""Angle from the sun beyond which the difference fades, so that no edge is seen at the last."""
-
 SHELLS = 15
 ARC = math.radians(2.0)
-
-
-class Directions(NamedTuple):
-    """Directions around each sun at each altitude.
-
-    Attributes
-    ----------
-    cosine, weight : ndarray, shape (ring,)
-        Cosine of the angle from the sun, and its share of d cosine.
-    position, position_weight : ndarray, shape (altitude, sun, ring, position)
-        Position angle about the sun, 0 toward the zenith, to pi; apart above and below the
-        horizon where that crosses a ring. [rad]
-    mu : ndarray, shape (altitude, sun, ring, position)
-        Cosines of the zenith angles.
-    """
-
-    cosine: Array
-    weight: Array
-    position: Array
-    position_weight: Array
-    mu: Array
 
 
 def has_aureole(atmosphere: Atmosphere) -> bool:
@@ -109,7 +79,7 @@ def solve_aureole(
     third changes D by 0.5 % on Mars at a dust depth of 0.5.
     """
     scaled = atmosphere.scaled
-    around = _directions(scaled.medium.r_bottom, grid)
+    around = rings_around(scaled.medium.r_bottom, grid)
     mu_s = np.cos(grid.sun_angle)
     radius = scaled.medium.r_bottom + np.maximum(grid.altitude, 1e-8)
     shape = around.mu.shape
@@ -122,43 +92,13 @@ def solve_aureole(
     moments = _peak_moments(atmosphere)
     first = _peaks_of_straight(atmosphere, rays, workers).reshape(*shape, -1)
     first -= _straight(atmosphere, grid, around, moments)[:, :, :, None]
-    first *= _fade(np.arccos(around.cosine))[:, None, None]
+    first *= fade(np.arccos(around.cosine))[:, None, None]
     aureole = _scattered(atmosphere, grid, around, moments, first)
     difference = first + _transport(atmosphere, aureole, field, rays, workers).reshape(first.shape)
     return (
         _scattered(atmosphere, grid, around, moments, difference),
-        _project(grid, around, difference, field),
+        project_rings(grid, around, difference, field),
     )
-
-
-def _directions(r_bottom: float, grid: Grid) -> Directions:
-    x, share = np.polynomial.legendre.leggauss(RINGS)
-    x, share = 0.5 * (x + 1.0), 0.5 * share
-    versine = 1.0 - math.cos(LAST_ANGLE)
-    cosine, weight = 1.0 - versine * x**2, 2.0 * versine * x * share
-    mu_s, sine_s = np.cos(grid.sun_angle)[:, None], np.sin(grid.sun_angle)[:, None]
-    sine = np.sqrt(1.0 - cosine**2)
-    mu_horizon = -np.sqrt(np.maximum(1.0 - (r_bottom / (r_bottom + grid.altitude)) ** 2, 0.0))
-    crossing = (mu_horizon[:, None, None] - cosine * mu_s) / np.maximum(sine * sine_s, 1e-12)
-    edge = np.where(np.abs(crossing) < 1.0, np.arccos(np.clip(crossing, -1.0, 1.0)), math.pi / 2.0)
-    edge = edge[..., None]
-    y, share = np.polynomial.legendre.leggauss(SIDES)
-    y, share = 0.5 * (y + 1.0), 0.5 * share
-    position = np.concatenate([edge * y, edge + (math.pi - edge) * y], axis=-1)
-    mu = cosine[:, None] * mu_s[..., None] + (sine * sine_s)[..., None] * np.cos(position)
-    return Directions(
-        cosine=cosine,
-        weight=weight,
-        position=position,
-        position_weight=np.concatenate([edge * share, (math.pi - edge) * share], axis=-1),
-        mu=mu,
-    )
-
-
-def _fade(angle: Array) -> Array:
-    fading = np.clip((angle - FADES_FROM) / (LAST_ANGLE - FADES_FROM), 0.0, 1.0)
-    share: Array = np.cos(0.5 * math.pi * fading) ** 2
-    return share
 
 
 def _peak_moments(atmosphere: Atmosphere) -> Array:
@@ -186,7 +126,7 @@ def _peaks_of_straight(atmosphere: Atmosphere, rays: Array, workers: Workers) ->
 
 
 def _straight(
-    atmosphere: Atmosphere, grid: Grid, around: Directions, moments: Array
+    atmosphere: Atmosphere, grid: Grid, around: Rings, moments: Array
 ) -> npt.NDArray[np.float32]:
     """Radiance of straight light around the sun, shape (altitude, sun, ring, wavelength).
 
@@ -222,7 +162,7 @@ def _fill_sun_columns(columns, r_bottom, r_top, radius, mu_s, out):
 
 
 def _scattered(
-    atmosphere: Atmosphere, grid: Grid, around: Directions, moments: Array, radiance: Array
+    atmosphere: Atmosphere, grid: Grid, around: Rings, moments: Array, radiance: Array
 ) -> Aureole:
     """Scatter light once in the peaks, in each altitude's mixture of constituents."""
     scaled = atmosphere.scaled
@@ -234,7 +174,7 @@ def _scattered(
     harmonics = build_harmonics(SERIES)
     at_rings = harmonics_at(harmonics, around.cosine) * around.weight[:, None]
     angles = np.linspace(0.0, LAST_ANGLE, ANGLES)
-    at_angles = harmonics_at(harmonics, np.cos(angles)) * _fade(angles)[:, None]
+    at_angles = harmonics_at(harmonics, np.cos(angles)) * fade(angles)[:, None]
     source = np.empty((*radiance.shape[:2], ANGLES, ORDERS, radiance.shape[-1]), np.float32)
     for m in range(ORDERS):
         order = harmonics.azimuthal == m
@@ -274,23 +214,3 @@ def _transport(
 
     workers.run_rows(len(fans.starts), work, chunk=1024)
     return out
-
-
-def _project(grid: Grid, around: Directions, radiance: Array, field: DiffuseField) -> DiffuseField:
-    """Moments about the zenith of light around the sun."""
-    solid_angle = 2.0 * around.weight[:, None] * around.position_weight
-    mu_s, sine_s = np.cos(grid.sun_angle), np.sin(grid.sun_angle)
-    moments = np.empty_like(field.radiance)
-    for i in range(len(radiance)):
-        mu = around.mu[i]
-        sines = np.sqrt(np.maximum(1.0 - mu**2, 0.0)) * sine_s[:, None, None]
-        across = (around.cosine[:, None] - mu * mu_s[:, None, None]) / np.maximum(sines, 1e-12)
-        azimuth = np.arccos(np.clip(across, -1.0, 1.0))
-        for j in range(mu_s.size):
-            basis = harmonics_at(field.harmonics, mu[j].ravel())
-            basis *= np.cos(np.outer(azimuth[j].ravel(), field.harmonics.azimuthal))
-            basis *= solid_angle[i, j].reshape(-1, 1)
-            moments[i, j] = basis.T @ radiance[i, j].reshape(len(basis), -1)
-    flux = solid_angle[0] * np.maximum(around.mu[0], 0.0)
-    ground = np.einsum("jqp,jqpw->jw", flux, radiance[0], optimize=True)
-    return field._replace(radiance=moments, ground=ground.astype(float))

@@ -15,6 +15,7 @@ from skybake.scattering.ray import RayLight
 from skybake.sky.table import (
     AZIMUTHS,
     AZIMUTHS_FROM_SPACE,
+    AZIMUTHS_FROM_SPACE_AUREOLE,
     FoldedTable,
     horizon_angles,
     ray_azimuths,
@@ -69,7 +70,7 @@ def table_geometry(
         Trace rays at all azimuths of the table, also where few determine the others.
     """
     first, horizon = horizon_angles(r, r_bottom, r_top)
-    azimuths = AZIMUTHS_FROM_SPACE
+    azimuths = AZIMUTHS_FROM_SPACE_AUREOLE if has_aureole else AZIMUTHS_FROM_SPACE
     if first == 0.0:
         azimuths = (
             AZIMUTHS

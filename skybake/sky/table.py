@@ -25,12 +25,15 @@ LATITUDES = 120
 LATITUDES_FROM_SPACE = 180
 AZIMUTHS = 97
 AZIMUTHS_FROM_SPACE = 121
+AZIMUTHS_FROM_SPACE_AUREOLE = 201
+"""Around the terminator, where they crowd, fewer would do; the aureole is elsewhere."""
 
 RAY_AZIMUTHS = ORDER + 3
 """Azimuths of rays where the observer sees no twilight: the diffuse field has orders m up to
 `ORDER`, and what the sun alone lights is smoother."""
 
-RAY_AZIMUTHS_AUREOLE = 49
+RAY_AZIMUTHS_AUREOLE = 65
+"""Of a medium with an aureole, which has more orders than the diffuse field."""
 RAY_AZIMUTHS_TWILIGHT = 49
 TWILIGHT_ELEVATION = math.radians(2.0)
 HIGH_DIP = math.radians(4.0)
@@ -82,9 +85,10 @@ def horizon_angles(r: float, r_bottom: float, r_top: float) -> tuple[float, floa
 def ray_azimuths(sun_elevation: float, zenith_horizon: float, *, has_aureole: bool = False) -> int:
     """How many azimuths of rays determine those of a table inside the atmosphere."""
     dip = zenith_horizon - math.pi / 2.0
+    least = RAY_AZIMUTHS_AUREOLE if has_aureole else RAY_AZIMUTHS
     if sun_elevation > TWILIGHT_ELEVATION + dip:
-        return RAY_AZIMUTHS_AUREOLE if has_aureole else RAY_AZIMUTHS
-    return RAY_AZIMUTHS_TWILIGHT if dip < HIGH_DIP else AZIMUTHS
+        return least
+    return max(least, RAY_AZIMUTHS_TWILIGHT if dip < HIGH_DIP else AZIMUTHS)
 
 
 def table_directions(

@@ -21,7 +21,8 @@ from tests.formats.maps import listing
     [
         (30.0, {}, "half"),
         (30.0, {"units": "nits"}, "float"),  # the disc would overflow
-        (30.0, {"units": "nits", "sun_disc": "exclude"}, "half"),
+        (30.0, {"units": "nits", "sun_disc": "exclude"}, "float"),  # the aureole might
+        (-2.0, {"units": "nits", "sun_disc": "exclude"}, "half"),
         (30.0, {"size": 4096, "sun_disc": "only"}, "half"),
         (-6.0, {}, "float"),  # twilight would be denormal
         (-6.0, {"ev": 0.0}, "half"),

@@ -89,7 +89,7 @@ def test_rays_at_few_azimuths_tell_all_others(monkeypatch, preset, elevation, al
     made = scene(preset, elevation, altitude)
     zenith, azimuth, _ = views(made)
     few = by_table(made, zenith, azimuth)
-    monkeypatch.setattr("skybake.sky.spectral_table.ray_azimuths", lambda *_: AZIMUTHS)
+    monkeypatch.setattr("skybake.sky.spectral_table.ray_azimuths", lambda *_, **__: AZIMUTHS)
     light = made.sky.skylight
     many = fold_table(light.spectral_table(made.sky.source), light.basis, made.rgb_weights)
     monkeypatch.setitem(made.__dict__, "table", many)
