@@ -132,7 +132,7 @@ class LightOfFans:
         self._moments = [flatten(each) for each in (field, side_by_side(field), scaled.medium)]
         # Only a medium with peaks that matter has an aureole.
         self._has_aureole = atmosphere.aureole.source.shape[2] > 0
-        self._bent = [flatten(each) for each in (atmosphere.aureole, field, scaled)]
+        self._bent = flatten(atmosphere.aureole), self._moments[0], self._sources[0]
         self._rays, self._single, self._diffuse = map(flatten, (fans, single, diffuse))
 
     def allocate(self) -> tuple[Flat | None, Flat | None]:
