@@ -1,0 +1,136 @@
+"""The light of a layer as the eye's rays look it up."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from skybake.jit.kernel import kernel
+from skybake.optics.medium import Array
+
+
+class LayerLight(NamedTuple):
+    """Light in a tile, for one sun or for several heights of it.
+
+    Attributes
+    ----------
+    volume : ndarray of float32, shape (sun, z, y, x, 1 + channel * harmonic)
+        In each voxel the optical depth toward the sun, without forward peaks, and the moments of
+        the diffuse radiance.
+    spacing : ndarray of float64, shape (3,)
+        Of voxels along z, y and x. [km]
+    base : float
+        Altitude of the lowest voxels' lower face. [km]
+    sun_mu : ndarray of float64, shape (sun,)
+        Cosines of the sun's zenith angle, ascending.
+    irradiance : ndarray of float64, shape (sun, z, channel)
+        Facing the sun, without clouds, at the altitudes of voxels.
+    order : int
+        Highest degree of the harmonics.
+    fraction : float
+        Share of scattered light that counts as not scattered.
+    scatter : ndarray of float64, shape (harmonic,)
+        (2l + 1) / (4 pi) times the moment of the truncated phase function. [sr⁻¹]
+    truncated, peak : ndarray
+        Of `Particles`.
+    """
+
+    volume: npt.NDArray[np.float32]
+    spacing: Array
+    base: float
+    sun_mu: Array
+    irradiance: Array
+    order: int
+    fraction: float
+    scatter: Array
+    truncated: Array
+    peak: Array
+
+
+@kernel
+def sun_share(light, mu_s):
+    """Place of a sun among those of a layer: its lower neighbour, and the share of the next."""
+    suns = light.sun_mu.size
+    i = 0
+    while i < suns - 2 and mu_s > light.sun_mu[i + 1]:
+        i += 1
+    if suns == 1:
+        return 0.0
+    share = (mu_s - light.sun_mu[i]) / (light.sun_mu[i + 1] - light.sun_mu[i])
+    return i + min(max(share, 0.0), 1.0 - 1e-9)
+
+
+@kernel
+def fill_corners(light, x, y, altitude, corner, weight):
+    """Write indices (z, y, x) of the eight voxels around a point, shape (8, 3), and their weights."""
+    _, levels, rows, columns, _ = light.volume.shape
+    fz = min(max((altitude - light.base) / light.spacing[0] - 0.5, 0.0), levels - 1.0)
+    fy, fx = y / light.spacing[1] - 0.5, x / light.spacing[2] - 0.5
+    k = min(int(fz), max(levels - 2, 0))
+    j, i = math.floor(fy), math.floor(fx)
+    w, v, u = fz - k, fy - j, fx - i
+    for n in range(8):
+        corner[n, 0] = min(k + (n >> 2), levels - 1)
+        corner[n, 1] = (j + ((n >> 1) & 1)) % rows
+        corner[n, 2] = (i + (n & 1)) % columns
+        weight[n] = (w if n >> 2 else 1.0 - w) * (v if (n >> 1) & 1 else 1.0 - v)
+        weight[n] *= u if n & 1 else 1.0 - u
+
+
+@kernel
+def sun_depth(light, place, corner, weight):
+    """Optical depth toward the sun between voxels, without forward peaks."""
+    first = int(place)
+    share = place - first
+    total = 0.0
+    for n in range(8):
+        k, j, i = corner[n, 0], corner[n, 1], corner[n, 2]
+        value = float(light.volume[first, k, j, i, 0])
+        if share > 0.0:
+            value += share * (light.volume[first + 1, k, j, i, 0] - value)
+        total += weight[n] * value
+    return total
+
+
+@kernel
+def fill_diffuse(light, place, corner, weight, toward, scratch, out):
+    """Write the diffuse light that is scattered toward the eye at a point, by channel.
+
+    Parameters
+    ----------
+    light : LayerLight
+        The layer.
+    place : float
+        Of `sun_share`.
+    corner, weight
+        Of `fill_corners`.
+    toward : ndarray of float32, shape (harmonic,)
+        Harmonics of the direction to the eye times `LayerLight.scatter`.
+    scratch : ndarray of float32, shape (channel * harmonic,)
+        Work space.
+    out : ndarray of float64, shape (channel,)
+        Receives radiance per optical depth.
+    """
+    size = scratch.size
+    for q in range(size):
+        scratch[q] = 0.0
+    first = int(place)
+    share = place - first
+    for sun in range(2 if share > 0.0 else 1):
+        part = share if sun == 1 else 1.0 - share
+        for n in range(8):
+            scale = np.float32(part * weight[n])
+            if scale == 0.0:
+                continue
+            voxel = light.volume[first + sun, corner[n, 0], corner[n, 1], corner[n, 2]]
+            for q in range(size):
+                scratch[q] += scale * voxel[1 + q]
+    harmonics = toward.size
+    for c in range(out.size):
+        total = np.float32(0.0)
+        for p in range(harmonics):
+            total += toward[p] * scratch[c * harmonics + p]
+        out[c] = max(total, np.float32(0.0))

@@ -1,0 +1,304 @@
+"""What an observer sees of one layer of clouds."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from skybake.cloud_fields.field import clearance_at, extinction_at
+from skybake.clouds.harmonics import fill_harmonics
+from skybake.clouds.light import fill_corners, fill_diffuse, sun_depth, sun_share
+from skybake.clouds.particles import DEEPEST, TERMS
+from skybake.jit.kernel import kernel
+from skybake.optics.medium import Array
+
+FARTHEST = 600.0
+"""Length of a ray within a layer, beyond which it is not followed. [km]"""
+
+OPAQUE = 0.004
+"""Transmittance below which nothing behind is seen."""
+
+THINNEST = 0.02
+"""Extinction below which there is no cloud. [km⁻¹]"""
+
+
+class Marching(NamedTuple):
+    """How finely rays are sampled.
+
+    Attributes
+    ----------
+    depth : float
+        Optical depth of a step, without forward peaks.
+    shortest : float
+        Step where nothing is known. [km]
+    taps : int
+        Samples of the detailed field on the first way to the sun, of a voxel's length; 0 where
+        voxels have no more details than their light.
+    pixel : float
+        Angle below which nothing needs to be resolved. [rad]
+    """
+
+    depth: float
+    shortest: float
+    taps: int
+    pixel: float
+
+
+class MarchScratch(NamedTuple):
+    """Work space of `fill_march`; each thread needs its own."""
+
+    corner: npt.NDArray[np.int64]
+    weight: Array
+    harmonic: Array
+    toward: npt.NDArray[np.float32]
+    moments: npt.NDArray[np.float32]
+    diffuse: Array
+    truncated: Array
+    peak: Array
+    local: Array
+
+
+def allocate_march(channels: int, order: int) -> MarchScratch:
+    """Make the work space for a number of channels and an order."""
+    harmonics = (order + 1) ** 2
+    return MarchScratch(
+        corner=np.empty((8, 3), np.int64),
+        weight=np.empty(8),
+        harmonic=np.empty(harmonics),
+        toward=np.empty(harmonics, np.float32),
+        moments=np.empty(channels * harmonics, np.float32),
+        diffuse=np.empty(channels),
+        truncated=np.empty(channels),
+        peak=np.empty((channels, TERMS)),
+        local=np.empty((2, 3)),
+    )
+
+
+@kernel
+def fill_march(
+    field, light, radius, altitude, directions, sun, marching, first, last, scratch, seen, through
+):
+    """Follow rays through a layer.
+
+    Parameters
+    ----------
+    field : CloudField
+        The layer.
+    light : LayerLight
+        Its light.
+    radius, altitude : float
+        Of the ground, and of the observer above it. [km]
+    directions : ndarray of float64, shape (ray, 3)
+        x east, y north, z up.
+    sun : ndarray of float64, shape (3,)
+        Toward the sun, in these axes.
+    marching : Marching
+        How finely.
+    first, last : int
+        Rays to follow.
+    scratch : MarchScratch
+        Work space.
+    seen : ndarray of float32, shape (ray, channel)
+        Receives the radiance, without the air between.
+    through : ndarray of float32, shape (ray, 3)
+        Receives the transmittance without forward peaks, which is that of what is behind; the true
+        one, which is that of a sharp image; and the mean distance of what is seen, or 0. [km]
+
+    Notes
+    -----
+    Midpoints of steps of equal optical depth; empty space is left out by its clearance. Sunlight
+    that is scattered once is exact; that within forward peaks is followed as a series in the depth
+    up to there (`Particles`); the rest comes from the moments of diffuse light.
+    """
+    channels = seen.shape[1]
+    keep = 1.0 - light.fraction
+    for n in range(first, last):
+        for c in range(channels):
+            seen[n, c] = 0.0
+        through[n, 0] = through[n, 1] = 1.0
+        through[n, 2] = 0.0
+        dx, dy, dz = directions[n, 0], directions[n, 1], directions[n, 2]
+        begin = _entry(radius, altitude, dz, field.base, field.top)
+        end = _exit(radius, altitude, dz, field.base, field.top, begin)
+        if end <= begin:
+            continue
+        place = _look(light, radius, altitude, directions[n], sun, begin, scratch)
+        passes, depth = 1.0, 0.0
+        weighted = total = 0.0
+        at = begin
+        shortest = marching.shortest + 0.5 * at * marching.pixel
+        step = shortest
+        while at < end:
+            step = min(step, end - at + 1e-6)
+            middle = at + 0.5 * step
+            px, py, pz = middle * dx, middle * dy, altitude + middle * dz
+            above = pz + radius
+            h = math.sqrt(px * px + py * py + above * above) - radius
+            x = field.origin[0] + px * radius / above
+            y = field.origin[1] + py * radius / above
+            blur = middle * marching.pixel
+            shortest = marching.shortest + 0.5 * blur
+            clear = clearance_at(field, x, y, h, blur)
+            if clear > 0.5 * shortest:
+                at = max(middle + clear, at + shortest)
+                step = shortest
+                continue
+            extinction = extinction_at(field, x, y, h, blur)
+            if extinction < THINNEST:
+                at += step
+                step = shortest
+                continue
+            scaled = extinction * keep
+            if scaled * step > 1.6 * marching.depth and step > 1.01 * shortest:
+                step = max(marching.depth / scaled, shortest)
+                continue
+            near = 0.0
+            sun_x, sun_y, sun_h = x, y, h
+            if marching.taps > 0:
+                reach = light.spacing[2]
+                local = scratch.local[1]
+                for q in range(marching.taps):
+                    s = reach * (q + 0.5) / marching.taps
+                    near += extinction_at(
+                        field, x + s * local[0], y + s * local[1], h + s * local[2], blur
+                    )
+                near *= reach / marching.taps * keep
+                sun_x += reach * local[0]
+                sun_y += reach * local[1]
+                sun_h += reach * local[2]
+            fill_corners(light, sun_x, sun_y, sun_h, scratch.corner, scratch.weight)
+            toward_sun = near + sun_depth(light, place, scratch.corner, scratch.weight)
+            if marching.taps > 0:
+                fill_corners(light, x, y, h, scratch.corner, scratch.weight)
+            fill_diffuse(
+                light,
+                place,
+                scratch.corner,
+                scratch.weight,
+                scratch.toward,
+                scratch.moments,
+                scratch.diffuse,
+            )
+            stops = 1.0 - math.exp(-scaled * step)
+            # Depths of all particles, peaks included, of the sun's and of the eye's way.
+            to_sun = toward_sun / keep
+            to_eye = depth + 0.5 * extinction * step
+            sharp = math.exp(-light.fraction * (to_sun + to_eye)) / keep
+            beam = math.exp(-toward_sun)
+            series = min(to_sun, DEEPEST)
+            weight = passes * stops
+            fz = (h - light.base) / light.spacing[0] - 0.5
+            for c in range(channels):
+                peak = scratch.peak[c, TERMS - 1]
+                for q in range(TERMS - 2, -1, -1):
+                    peak = peak * series + scratch.peak[c, q]
+                lit = _irradiance(light, place, fz, c) * beam
+                seen[n, c] += weight * (
+                    lit * (scratch.truncated[c] + sharp * peak) + scratch.diffuse[c]
+                )
+            weighted += weight * middle
+            total += weight
+            passes *= 1.0 - stops
+            depth += extinction * step
+            at += step
+            if passes < OPAQUE:
+                passes = 0.0
+                break
+            step = min(max(marching.depth / scaled, shortest), 2.0 * step)
+        through[n, 0] = passes
+        through[n, 1] = math.exp(-depth) if passes > 0.0 else 0.0
+        through[n, 2] = weighted / total if total > 0.0 else 0.0
+
+
+@kernel
+def _look(light, radius, altitude, direction, sun, distance, scratch):
+    """Prepare what holds along a ray: phase functions, and harmonics where it enters the layer."""
+    px, py = distance * direction[0], distance * direction[1]
+    pz = altitude + distance * direction[2] + radius
+    r = math.sqrt(px * px + py * py + pz * pz)
+    ux, uy, uz = px / r, py / r, pz / r
+    # The tile's axes are the observer's, turned by the shortest way to the local vertical.
+    for which in range(2):
+        source = direction if which == 0 else sun
+        x, y, z = source[0], source[1], source[2]
+        along = x * ux + y * uy + z * uz
+        both = (along + z) / (1.0 + uz)
+        local = scratch.local[which]
+        local[0], local[1] = x - both * ux, y - both * uy
+        local[2] = along
+    local = scratch.local[0]
+    fill_harmonics(-local[0], -local[1], -local[2], light.order, scratch.harmonic)
+    for p in range(scratch.harmonic.size):
+        scratch.toward[p] = light.scatter[p] * scratch.harmonic[p]
+    nu = direction[0] * sun[0] + direction[1] * sun[1] + direction[2] * sun[2]
+    angles = light.truncated.shape[0]
+    middle = angles // 2
+    if nu > 0.0:
+        place = middle * math.sqrt(math.sqrt(max(1.0 - nu, 0.0)))
+    else:
+        place = 2 * middle - middle * math.sqrt(math.sqrt(max(1.0 + nu, 0.0)))
+    i = min(int(place), angles - 2)
+    u = place - i
+    for c in range(scratch.truncated.size):
+        low, high = light.truncated[i, c], light.truncated[i + 1, c]
+        scratch.truncated[c] = low + u * (high - low)
+        for q in range(TERMS):
+            low, high = light.peak[i, c, q], light.peak[i + 1, c, q]
+            scratch.peak[c, q] = low + u * (high - low)
+    return sun_share(light, scratch.local[1, 2])
+
+
+@kernel
+def _irradiance(light, place, fz, channel):
+    """Irradiance by the sun between levels and suns."""
+    levels = light.irradiance.shape[1]
+    z = min(max(fz, 0.0), levels - 1.0)
+    k = min(int(z), max(levels - 2, 0))
+    w = z - k
+    first = int(place)
+    share = place - first
+    upper = min(k + 1, levels - 1)
+    low, high = light.irradiance[first, k, channel], light.irradiance[first, upper, channel]
+    value = low + w * (high - low)
+    if share > 0.0:
+        low = light.irradiance[first + 1, k, channel]
+        high = light.irradiance[first + 1, upper, channel]
+        value += share * (low + w * (high - low) - value)
+    return value
+
+
+@kernel
+def _entry(radius, altitude, slope, base, top):
+    """Distance at which a ray enters a layer; infinite if it does not. [km]"""
+    r = radius + altitude
+    b = r * slope
+    if altitude > top:
+        inside = b * b - (altitude - top) * (2.0 * radius + altitude + top)
+        if b >= 0.0 or inside <= 0.0:
+            return math.inf
+        return -b - math.sqrt(inside)
+    if altitude >= base:
+        return 0.0
+    to_ground = b * b - altitude * (2.0 * radius + altitude)
+    if b < 0.0 and to_ground > 0.0:
+        return math.inf
+    return -b + math.sqrt(b * b + (base - altitude) * (2.0 * radius + altitude + base))
+
+
+@kernel
+def _exit(radius, altitude, slope, base, top, entry):
+    """Distance at which a ray leaves a layer and does not come back. [km]"""
+    if entry == math.inf:
+        return 0.0
+    r = radius + altitude
+    b = r * slope
+    leaves = -b + math.sqrt(max(b * b + (top - altitude) * (2.0 * radius + altitude + top), 0.0))
+    if altitude >= base and b < 0.0:
+        below = b * b - (altitude - base) * (2.0 * radius + altitude + base)
+        # A ray that comes down to the ground leaves it once; others rise again behind.
+        if below > 0.0 and b * b > altitude * (2.0 * radius + altitude):
+            leaves = -b - math.sqrt(below)
+    return min(leaves, entry + FARTHEST)
