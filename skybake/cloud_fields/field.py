@@ -32,6 +32,8 @@ class CloudField(NamedTuple):
         The tile's coordinates x and y under the observer's feet. [km]
     base, top : float
         Altitudes between which there may be clouds. [km]
+    floor : float
+        Altitude of the lowest node, or of the lower face of the lowest voxels. [km]
     extinction : ndarray of float64, shape (z,)
         Inside a surface, at the nodes' heights; empty for voxels. [km⁻¹]
     edge : float
@@ -49,6 +51,7 @@ class CloudField(NamedTuple):
     origin: npt.NDArray[np.float64]
     base: float
     top: float
+    floor: float
     extinction: npt.NDArray[np.float64]
     edge: float
     displacement: npt.NDArray[np.float64]
@@ -84,7 +87,7 @@ def clearance_at(field, x, y, altitude, blur):
 @kernel
 def _voxel(field, x, y, altitude):
     levels, rows, columns = field.values.shape
-    k = int(math.floor((altitude - field.base) / field.spacing[0]))
+    k = int(math.floor((altitude - field.floor) / field.spacing[0]))
     if k < 0 or k >= levels:
         return 0.0
     j = int(math.floor(y / field.spacing[1])) % rows
@@ -94,9 +97,9 @@ def _voxel(field, x, y, altitude):
 
 @kernel
 def _between_voxels(field, x, y, altitude):
-    """Trilinear between centres; it falls to 0 within a voxel beyond the first and last plane."""
+    """Trilinear between centres; extinction falls to 0 within a voxel beyond the first and last plane."""
     levels, rows, columns = field.values.shape
-    fz = (altitude - field.base) / field.spacing[0] - 0.5
+    fz = (altitude - field.floor) / field.spacing[0] - 0.5
     if fz <= -1.0 or fz >= levels:
         return 0.0
     fy, fx = y / field.spacing[1] - 0.5, x / field.spacing[2] - 0.5

@@ -32,18 +32,21 @@ class Marching(NamedTuple):
     ----------
     depth : float
         Optical depth of a step, without forward peaks.
-    shortest : float
-        Step where nothing is known. [km]
+    shortest, longest : float
+        Step where nothing is known; the longest within a cloud, so that none is passed over. [km]
     taps : int
-        Samples of the detailed field on the first way to the sun, of a voxel's length; 0 where
-        voxels have no more details than their light.
+        Samples of the detailed field on the first way to the sun; voxels of light tell the rest.
+    reach : float
+        Length of that way. [km]
     pixel : float
         Angle below which nothing needs to be resolved. [rad]
     """
 
     depth: float
     shortest: float
+    longest: float
     taps: int
+    reach: float
     pixel: float
 
 
@@ -158,7 +161,7 @@ def fill_march(
             near = 0.0
             sun_x, sun_y, sun_h = x, y, h
             if marching.taps > 0:
-                reach = light.spacing[2]
+                reach = marching.reach
                 local = scratch.local[1]
                 for q in range(marching.taps):
                     s = reach * (q + 0.5) / marching.taps
@@ -208,6 +211,7 @@ def fill_march(
                 passes = 0.0
                 break
             step = min(max(marching.depth / scaled, shortest), 2.0 * step)
+            step = min(step, max(marching.longest, shortest))
         through[n, 0] = passes
         through[n, 1] = math.exp(-depth) if passes > 0.0 else 0.0
         through[n, 2] = weighted / total if total > 0.0 else 0.0

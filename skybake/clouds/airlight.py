@@ -1,0 +1,252 @@
+"""The light of the air along rays, in the shadow of clouds and lit by them."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from skybake.clouds.air import ClearAir
+from skybake.jit.kernel import kernel
+from skybake.optics.medium import Array
+
+STRETCHES = 12
+CROWDING = 1.3
+"""Power by which stretches are shorter near the observer."""
+
+TINY = 1e-30
+
+
+class AirTable(NamedTuple):
+    """Light of clear air along rays, relative to all of a ray's light without clouds.
+
+    Attributes
+    ----------
+    distance : ndarray of float64, shape (ray, stretch + 1)
+        From where clouds may be, or throw shadows, to where no more can. [km]
+    single : ndarray of float64, shape (ray, stretch + 2, channel)
+        Sunlight scattered once, gathered up to each distance and to the ray's end.
+    diffuse : ndarray of float64, shape (ray, stretch + 2, channel)
+        The same of the rest, without the ground.
+    sunlit, skylit : ndarray of float64, shape (ray, channel)
+        Light of the ground by the sun and by the sky.
+    glow : ndarray of float64, shape (ray, stretch + 2, channel)
+        Light that air above clouds has from them, beyond that from the ground.
+    transmittance : ndarray of float64, shape (ray, stretch + 1, channel)
+        Of what is behind.
+    total : ndarray of float64, shape (ray, channel)
+        What all is relative to: radiance per unit irradiance, times the channels' weights.
+    """
+
+    distance: Array
+    single: Array
+    diffuse: Array
+    sunlit: Array
+    skylit: Array
+    glow: Array
+    transmittance: Array
+    total: Array
+
+
+class Dimming(NamedTuple):
+    """How clouds change the diffuse light around them.
+
+    Attributes
+    ----------
+    altitude : ndarray of float64, shape (level,)
+        Ascending. [km]
+    ratio : ndarray of float64, shape (level, channel)
+        Mean radiance with clouds over that without; 1 above them.
+    ground : ndarray of float64, shape (channel,)
+        The same of the irradiance of the ground by the sky.
+    """
+
+    altitude: Array
+    ratio: Array
+    ground: Array
+
+
+def shadowed_stretch(
+    altitude: float, directions: Array, radius: float, top: float
+) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
+    """Where rays are below the top of clouds: begin, end [km], and whether the end is the ground."""
+    r, slope = radius + altitude, directions[:, 2]
+    b = r * slope
+    chord = b * b - (altitude - top) * (2.0 * radius + altitude + top)
+    ground = b * b - altitude * (2.0 * radius + altitude)
+    root = np.sqrt(np.maximum(chord, 0.0))
+    inside = altitude < top
+    begin = np.where(inside, 0.0, -b - root)
+    misses = (chord <= 0.0) | ((not inside) & (b >= 0.0))
+    hits = (b < 0.0) & (ground > 0.0) & ~misses
+    end = np.where(hits, -b - np.sqrt(np.maximum(ground, 0.0)), -b + root)
+    return np.where(misses, 0.0, begin), np.where(misses, 0.0, end), hits
+
+
+def build_table(
+    air: ClearAir,
+    altitude: float,
+    directions: Array,
+    sun: Array,
+    top: float,
+    weights: Array,
+    reflectance: Array,
+) -> AirTable:
+    """Gather the light of clear air along rays.
+
+    Parameters
+    ----------
+    air : ClearAir
+        The air.
+    altitude : float
+        Of the observer. [km]
+    directions : ndarray of float64, shape (ray, 3)
+        x east, y north, z up.
+    sun : ndarray of float64, shape (3,)
+        Toward the sun.
+    top : float
+        Of the highest clouds. [km]
+    weights : ndarray of float64, shape (wavelength, channel)
+        Of the channels.
+    reflectance : ndarray of float64, shape (wavelength,)
+        Of clouds and ground, seen from above.
+    """
+    begin, end, hits = shadowed_stretch(altitude, directions, air.radius, top)
+    share = (np.arange(STRETCHES + 1) / STRETCHES) ** CROWDING
+    distance = begin[:, None] + (end - begin)[:, None] * share
+    # Stay above the ground, whose light belongs to what is behind.
+    distance[hits, -1] *= 1.0 - 1e-7
+    spans = air.spans(altitude, directions, distance, sun)
+    single = spans.single @ weights
+    diffuse = spans.diffuse @ weights
+    transmittance = spans.transmittance @ weights / weights.sum(axis=0)
+    ground = np.where(hits[:, None], diffuse[:, -1] - diffuse[:, -2], 0.0)
+    diffuse[:, -1] -= ground
+    sunlit = np.zeros_like(ground)
+    if hits.any():
+        lit = _sunlit_ground(air, altitude, directions[hits], end[hits], sun)
+        sunlit[hits] = (lit * spans.transmittance[hits, -1]) @ weights
+    sunlit = np.minimum(sunlit, ground)
+    change = air.brightening(reflectance)
+    glow = np.zeros_like(diffuse)
+    if altitude > top or not hits.all():
+        glow = (air.over_bright_spans(altitude, directions, distance, sun) * change) @ weights
+        # Below the tops, and of the ground, other parts tell the light.
+        beyond = np.where(hits[:, None], 0.0, glow[:, -1] - glow[:, -2])
+        glow[:, 1:] = glow[:, :1]
+        glow[:, -1] += beyond
+    total = single[:, -1] + diffuse[:, -1] + ground
+    scale = 1.0 / np.maximum(total, TINY)
+    return AirTable(
+        distance=distance,
+        single=single * scale[:, None],
+        diffuse=diffuse * scale[:, None],
+        sunlit=sunlit * scale,
+        skylit=(ground - sunlit) * scale,
+        glow=glow * scale[:, None],
+        transmittance=transmittance,
+        total=total,
+    )
+
+
+def _sunlit_ground(
+    air: ClearAir, altitude: float, directions: Array, distance: Array, sun: Array
+) -> Array:
+    """Radiance per unit irradiance of the ground where rays end, by the sun alone. [sr⁻¹]"""
+    place = directions * distance[:, None] + [0.0, 0.0, air.radius + altitude]
+    mu_s = place @ sun / np.linalg.norm(place, axis=1)
+    nodes = np.unique(np.concatenate([np.linspace(-0.02, 0.1, 25), np.linspace(0.1, 1.0, 19)]))
+    light = np.stack([air.sunlight(np.zeros(1), float(mu))[0] for mu in nodes])
+    through = np.stack([np.interp(mu_s, nodes, column) for column in light.T], axis=1)
+    lit: Array = air.albedo / math.pi * np.maximum(mu_s, 0.0)[:, None] * through
+    return lit
+
+
+@kernel
+def fill_lit(
+    table, row, weight, dimming, radius, altitude, directions, visible, first, last, lit, through
+):
+    """Write the light of air and ground with clouds around, relative to that without.
+
+    Parameters
+    ----------
+    table : AirTable
+        Clear air.
+    row, weight : ndarray, shape (ray, 4)
+        Rows of the table between which a ray is.
+    dimming : Dimming
+        Of the diffuse light.
+    radius, altitude : float
+        Of the ground, and of the observer above it. [km]
+    directions : ndarray of float64, shape (ray, 3)
+        Of the rays.
+    visible : ndarray of float32, shape (ray, stretch + 1)
+        Share of the sun along them, see `dim_visibility`.
+    first, last : int
+        Rays to do.
+    lit : ndarray of float32, shape (ray, stretch + 2, channel)
+        Receives the light gathered up to each distance, and all.
+    through : ndarray of float32, shape (ray, stretch + 1, channel)
+        Receives the transmittance up to each distance.
+    """
+    stretches = visible.shape[1] - 1
+    channels = lit.shape[2]
+    for n in range(first, last):
+        slope = directions[n, 2]
+        for c in range(channels):
+            gathered = 0.0
+            for q in range(stretches + 2):
+                single = diffuse = glow = passes = distance = 0.0
+                for p in range(4):
+                    i, w = row[n, p], weight[n, p]
+                    if w == 0.0:
+                        continue
+                    single += w * table.single[i, q, c]
+                    diffuse += w * table.diffuse[i, q, c]
+                    glow += w * table.glow[i, q, c]
+                    if q > 0:
+                        single -= w * table.single[i, q - 1, c]
+                        diffuse -= w * table.diffuse[i, q - 1, c]
+                        glow -= w * table.glow[i, q - 1, c]
+                    if q <= stretches:
+                        passes += w * table.transmittance[i, q, c]
+                        distance += w * table.distance[i, q]
+                        if q > 0:
+                            distance += w * table.distance[i, q - 1]
+                if q == 0 or q > stretches:
+                    # Before and beyond all clouds the sun shines.
+                    gathered += single + diffuse + glow
+                else:
+                    s = 0.5 * distance
+                    r = radius + altitude
+                    h = math.sqrt(r * r + s * s + 2.0 * r * s * slope) - radius
+                    dims = dimming_at(dimming, h, c)
+                    gathered += single * visible[n, q - 1] + diffuse * dims + glow
+                if q > stretches:
+                    for p in range(4):
+                        i, w = row[n, p], weight[n, p]
+                        if w > 0.0:
+                            gathered += w * (
+                                table.sunlit[i, c] * visible[n, stretches]
+                                + table.skylit[i, c] * dimming.ground[c]
+                            )
+                else:
+                    through[n, q, c] = passes
+                lit[n, q, c] = gathered
+
+
+@kernel
+def dimming_at(dimming, h, channel):
+    """Ratio of diffuse light at an altitude."""
+    levels = dimming.altitude.size
+    if h >= dimming.altitude[levels - 1]:
+        return 1.0
+    if h <= dimming.altitude[0]:
+        return dimming.ratio[0, channel]
+    k = 0
+    while h > dimming.altitude[k + 1]:
+        k += 1
+    u = (h - dimming.altitude[k]) / (dimming.altitude[k + 1] - dimming.altitude[k])
+    return dimming.ratio[k, channel] + u * (dimming.ratio[k + 1, channel] - dimming.ratio[k, channel])

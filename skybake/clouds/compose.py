@@ -1,0 +1,128 @@
+"""Clouds and the air before, between and behind them, as one picture."""
+
+from __future__ import annotations
+
+import math
+
+from skybake.clouds.airlight import CROWDING, TINY
+from skybake.jit.kernel import kernel
+
+
+@kernel
+def fill_places(zenith, azimuth, first, horizon, rows, columns, is_half, row, weight):
+    """Write between which nodes of a grid of directions each direction is, and their weights.
+
+    Parameters
+    ----------
+    zenith, azimuth : ndarray of float64, shape (n,)
+        Directions; azimuths from the grid's first column. [rad]
+    first, horizon : float
+        Zenith angles at which air and ground begin. [rad]
+    rows, columns : int
+        Of the grid, above the horizon and below it each.
+    is_half : bool
+        Whether columns go from 0 to pi, both included, or all around.
+    row : ndarray of int64, shape (n, 4)
+        Receives nodes, counted by side, row and column.
+    weight : ndarray of float64, shape (n, 4)
+        Receives their weights.
+    """
+    for n in range(zenith.size):
+        side = 0 if zenith[n] <= horizon else 1
+        if side == 0:
+            x = 1.0 - math.sqrt(max(horizon - zenith[n], 0.0) / (horizon - first))
+        else:
+            x = math.sqrt((zenith[n] - horizon) / (math.pi - horizon))
+        x = min(max(x, 0.0), 1.0) * (rows - 1)
+        i = min(int(x), rows - 2)
+        u = x - i
+        phi = azimuth[n] - 2.0 * math.pi * math.floor(azimuth[n] / (2.0 * math.pi))
+        if is_half:
+            y = min(phi, 2.0 * math.pi - phi) / math.pi * (columns - 1)
+            j = min(int(y), columns - 2)
+            east = j + 1
+        else:
+            y = phi / (2.0 * math.pi) * columns
+            j = min(int(y), columns - 1)
+            east = (j + 1) % columns
+        v = y - j
+        at = (side * rows + i) * columns
+        row[n, 0], row[n, 1] = at + j, at + east
+        row[n, 2], row[n, 3] = at + columns + j, at + columns + east
+        weight[n, 0], weight[n, 1] = (1.0 - u) * (1.0 - v), (1.0 - u) * v
+        weight[n, 2], weight[n, 3] = u * (1.0 - v), u * v
+
+
+@kernel
+def compose(total, row, weight, distance, lit, through, seen, passing, first, last, out, opacity):
+    """Put clouds of several layers into the light of the air.
+
+    Parameters
+    ----------
+    total : ndarray of float32, shape (ray, channel)
+        Light without clouds.
+    row, weight : ndarray, shape (ray, 4)
+        Nodes between which each ray is.
+    distance : ndarray of float64, shape (node, stretch + 1)
+        [km]
+    lit, through : ndarray of float32
+        Of `fill_lit` at the nodes.
+    seen : ndarray of float32, shape (layer, ray, channel)
+        Radiance of each layer, see `fill_march`.
+    passing : ndarray of float32, shape (layer, ray, 3)
+        What passes of what is behind, what of a sharp image, and the mean distance.
+    first, last : int
+        Rays to do.
+    out : ndarray of float32, shape (ray, channel)
+        Receives the light.
+    opacity : ndarray of float32, shape (ray,)
+        Receives the share of what is behind that clouds hide.
+    """
+    layers, _, channels = seen.shape
+    stretches = distance.shape[1] - 1
+    for n in range(first, last):
+        for c in range(channels):
+            out[n, c] = 0.0
+        begin = end = 0.0
+        for p in range(4):
+            begin += weight[n, p] * distance[row[n, p], 0]
+            end += weight[n, p] * distance[row[n, p], stretches]
+        passes, done = 1.0, -1.0
+        place_before = -1.0
+        for _ in range(layers + 1):
+            nearest, layer = math.inf, -1
+            for k in range(layers):
+                d = passing[k, n, 2]
+                # Layers at one distance are taken one after the other.
+                if passing[k, n, 0] < 1.0 and (d + 1e-9 * k) > done and d + 1e-9 * k < nearest:
+                    nearest, layer = d + 1e-9 * k, k
+            place = stretches + 1.0
+            if layer >= 0:
+                share = (nearest - begin) / max(end - begin, 1e-9)
+                place = min(max(share, 0.0), 1.0) ** (1.0 / CROWDING) * stretches
+            for c in range(channels):
+                gained = _at(lit, row[n], weight[n], place, c)
+                if place_before >= 0.0:
+                    gained -= _at(lit, row[n], weight[n], place_before, c)
+                out[n, c] += passes * max(total[n, c], TINY) * gained
+                if layer >= 0:
+                    air = _at(through, row[n], weight[n], place, c)
+                    out[n, c] += passes * air * seen[layer, n, c]
+            if layer < 0:
+                break
+            passes *= passing[layer, n, 0]
+            done, place_before = nearest, place
+        opacity[n] = 1.0 - passes
+
+
+@kernel
+def _at(values, row, weight, place, channel):
+    """Interpolate between nodes, and along their stretches."""
+    q = min(int(place), values.shape[1] - 2)
+    u = place - q
+    total = 0.0
+    for p in range(4):
+        if weight[p] != 0.0:
+            low, high = values[row[p], q, channel], values[row[p], q + 1, channel]
+            total += weight[p] * (low + u * (high - low))
+    return total

@@ -1,0 +1,111 @@
+"""How much of the sun reaches the air and the ground around a layer of clouds."""
+
+from __future__ import annotations
+
+import math
+
+from skybake.clouds.light import sun_share
+from skybake.jit.kernel import kernel
+
+SAMPLES = 6
+"""Places in each stretch of a ray at which the sun is looked for."""
+
+
+@kernel
+def dim_visibility(
+    field, light, leaving, radius, altitude, directions, distances, sun, first, last, scratch, out
+):
+    """Multiply shares of the sun that reach stretches of rays, and their ends, by a layer's.
+
+    Parameters
+    ----------
+    field, light : CloudField, LayerLight
+        The layer.
+    leaving : ndarray of float32, shape (sun, y, x)
+        Of `SolvedLayer`.
+    radius, altitude : float
+        Of the ground, and of the observer above it. [km]
+    directions : ndarray of float64, shape (ray, 3)
+        x east, y north, z up.
+    distances : ndarray of float64, shape (ray, stretch + 1)
+        Ends of the stretches. [km]
+    sun : ndarray of float64, shape (3,)
+        Toward the sun.
+    first, last : int
+        Rays to do.
+    scratch : ndarray of float64, shape (3,)
+        Work space.
+    out : ndarray of float32, shape (ray, stretch + 1)
+        Means over stretches, and the share at the end of the last.
+    """
+    stretches = out.shape[1] - 1
+    for n in range(first, last):
+        direction = directions[n]
+        for q in range(stretches):
+            begin, end = distances[n, q], distances[n, q + 1]
+            total = 0.0
+            for i in range(SAMPLES):
+                s = begin + (end - begin) * (i + 0.5) / SAMPLES
+                total += _visible(
+                    field, light, leaving, radius, altitude, direction, s, sun, scratch
+                )
+            out[n, q] *= total / SAMPLES
+        s = distances[n, stretches] * (1.0 - 1e-9)
+        out[n, stretches] *= _visible(
+            field, light, leaving, radius, altitude, direction, s, sun, scratch
+        )
+
+
+@kernel
+def _visible(field, light, leaving, radius, altitude, direction, distance, sun, local):
+    """Share of the sun at one place of a ray."""
+    px, py = distance * direction[0], distance * direction[1]
+    above = altitude + distance * direction[2] + radius
+    r = math.sqrt(px * px + py * py + above * above)
+    h = r - radius
+    mu_s = (sun[0] * px + sun[1] * py + sun[2] * above) / r
+    base = light.base
+    top = base + light.volume.shape[1] * light.spacing[0]
+    is_behind = h < base if mu_s > 0.0 else h > top
+    if not is_behind and not base <= h <= top:
+        return 1.0
+    x = field.origin[0] + px * radius / above
+    y = field.origin[1] + py * radius / above
+    place = sun_share(light, mu_s)
+    which = int(place)
+    share = place - which
+    if not is_behind:
+        k = min(int((h - base) / light.spacing[0]), light.volume.shape[1] - 1)
+        j = math.floor(y / light.spacing[1]) % leaving.shape[1]
+        i = math.floor(x / light.spacing[2]) % leaving.shape[2]
+        depth = float(light.volume[which, k, j, i, 0])
+        if share > 0.0:
+            depth += share * (light.volume[which + 1, k, j, i, 0] - depth)
+        return math.exp(-depth)
+    face = base if mu_s > 0.0 else top
+    chord = r * r * mu_s * mu_s + (face - h) * (2.0 * radius + face + h)
+    if chord < 0.0:
+        return 1.0
+    # Where the beam left the layer: up the way to a sun above, or down to one below.
+    to_face = math.sqrt(chord) - r * mu_s if mu_s > 0.0 else -r * mu_s - math.sqrt(chord)
+    both = (mu_s + sun[2]) / (1.0 + above / r)
+    local[0], local[1] = sun[0] - both * px / r, sun[1] - both * py / r
+    x += to_face * local[0]
+    y += to_face * local[1]
+    value = _between(leaving[which], light, x, y)
+    if share > 0.0:
+        value += share * (_between(leaving[which + 1], light, x, y) - value)
+    return value
+
+
+@kernel
+def _between(plane, light, x, y):
+    rows, columns = plane.shape
+    fy, fx = y / light.spacing[1] - 0.5, x / light.spacing[2] - 0.5
+    j, i = math.floor(fy), math.floor(fx)
+    v, u = fy - j, fx - i
+    j, i = j % rows, i % columns
+    north, east = (j + 1) % rows, (i + 1) % columns
+    low = plane[j, i] + u * (plane[j, east] - plane[j, i])
+    high = plane[north, i] + u * (plane[north, east] - plane[north, i])
+    return float(low + v * (high - low))
