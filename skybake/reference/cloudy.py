@@ -123,9 +123,7 @@ def _scenes(
     return scenes
 
 
-def _check_clouds(
-    medium: Medium, fields: Sequence[CloudField], phases: Sequence[Array]
-) -> None:
+def _check_clouds(medium: Medium, fields: Sequence[CloudField], phases: Sequence[Array]) -> None:
     if not fields or len(fields) != len(phases):
         message = f"phases: must be one for each of the fields, got {len(phases)}"
         raise InputError(message)

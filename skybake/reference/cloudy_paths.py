@@ -50,11 +50,6 @@ from skybake.reference.tracking import (
 DUSK = 0.1
 """Cosine of the sun's zenith angle below which paths that leave the clouds are guided."""
 
-ALWAYS_LIT = 4
-"""Vertices of a path that are all lit by the sun; of the later ones in clouds, only a share."""
-
-LIT = 0.4
-
 
 class CloudyScene(NamedTuple):
     """What light passes through at one wavelength.
@@ -195,15 +190,12 @@ def _follow(scene, sun, place, h, direction, at_ground, weight, room, state):
         for c in range(len(each)):
             total += each[c]
         in_cloud = not at_ground and _cloud_share(clouds, each, total) > 0.5
-        lit = LIT if in_cloud and order > ALWAYS_LIT else 1.0
-        sunlit = 0.0
-        if lit == 1.0 or uniform(state) < lit:
-            sunlit = _sunlit(scene, place, h, mu_s, sun, state)
+        sunlit = _sunlit(scene, place, h, mu_s, sun, state)
         if sunlit > 0.0:
             sent = max(0.0, mu_s) / math.pi
             if not at_ground:
                 sent, _ = phase_and_lobe(air, each, total, direction, sun)
-            radiance += weight * sent * sunlit * transmittance_to_space(air, h, mu_s) / lit
+            radiance += weight * sent * sunlit * transmittance_to_space(air, h, mu_s)
         promise = weight * look_up(guide, guide.ambient, h, mu_s)
         if order == 1:
             first_promise = promise
@@ -222,9 +214,7 @@ def _follow(scene, sun, place, h, direction, at_ground, weight, room, state):
             return radiance
         weight *= turned
         order += 1
-        end, place, h, _ = fly(
-            air, scene.peaks, clouds, place, direction, mu_s < DUSK, state
-        )
+        end, place, h, _ = fly(air, scene.peaks, clouds, place, direction, mu_s < DUSK, state)
         if end == ESCAPES:
             return radiance
         at_ground = end == MEETS_GROUND

@@ -120,7 +120,15 @@ def radiance(
             index = np.unravel_index(row, shape)
             air, guide = models[index[1]]
             means[index] = mean_radiance(
-                air, guide, sun, altitude, views[index[0]], first, last, per_batch, batch_seed(seed, row)
+                air,
+                guide,
+                sun,
+                altitude,
+                views[index[0]],
+                first,
+                last,
+                per_batch,
+                batch_seed(seed, row),
             )
 
     ALL_CPUS.run_rows(means.size, trace_batches)

@@ -74,9 +74,7 @@ def _most_in_voxels(field: CloudField) -> npt.NDArray[np.float64]:
     return inside * np.clip(depth, 0.0, 1.0)
 
 
-def _least_distance(
-    field: CloudField, values: npt.NDArray[np.float64]
-) -> npt.NDArray[np.float64]:
+def _least_distance(field: CloudField, values: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """Least distance to the displaced surface in each voxel, whose corners are nodes."""
     least = np.minimum(values[:-1], values[1:])
     for axis in (1, 2):
