@@ -149,7 +149,7 @@ def _directions(
     angle, azimuth = np.broadcast_arrays(
         np.atleast_1d(np.asarray(zenith, dtype=np.float64)), bearing
     )
-    named = {
+    named: dict[str, npt.ArrayLike] = {
         "altitude": altitude,
         "sun_elevation": sun_elevation,
         "sun_bearing": sun_bearing,

@@ -102,14 +102,14 @@ def _dilate(values: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
 def cloud_bound(field, bounds, radius, x, y, z, h):
     """Bound of a layer's extinction around a place [km⁻¹], and the distance it holds for [km]."""
     levels, rows, columns = bounds.extinction.shape
-    k = int(math.floor((h - bounds.base) / bounds.cell[0])) + 1
+    k = math.floor((h - bounds.base) / bounds.cell[0]) + 1
     if k < 0:
         return 0.0, bounds.base - h
     if k >= levels:
         return 0.0, h - bounds.base - (levels - 2) * bounds.cell[0]
     tile_x, tile_y = tile_place(field, radius, x, y, z)
-    j = int(math.floor(tile_y / bounds.cell[1])) % rows
-    i = int(math.floor(tile_x / bounds.cell[2])) % columns
+    j = math.floor(tile_y / bounds.cell[1]) % rows
+    i = math.floor(tile_x / bounds.cell[2]) % columns
     # The tile's stretch changes by far less than this on the way.
     reach = 0.99 * bounds.reach[k, j, i] / tile_stretch(radius, x, y, z)
     return bounds.extinction[k, j, i], reach
