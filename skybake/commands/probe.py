@@ -19,6 +19,7 @@ from skybake.commands.options.clouds import (
 )
 from skybake.commands.options.observer import (
     altitude_option,
+    sun_azimuth_option,
     sun_distance_needs,
     sun_distance_option,
     sun_option,
@@ -46,6 +47,7 @@ def _wavelengths(text: str) -> tuple[float, ...]:
 @click.command()
 @world_options
 @sun_option()
+@sun_azimuth_option()
 @moment_options
 @sun_distance_option()
 @altitude_option()
@@ -96,8 +98,8 @@ def probe(**options: Any) -> None:
     """Print radiances in given directions as CSV.
 
     Without --directions it looks along the circle at the sun's elevation and along the sun's
-    vertical plane. Azimuths are relative to the sun's; radiances are in W m-2 sr-1 nm-1 and leave
-    the sun's own disc out.
+    vertical plane. Azimuths count clockwise from the sun's; radiances are in W m-2 sr-1 nm-1 and
+    leave the sun's own disc out.
 
     \b
     Examples:
@@ -148,6 +150,7 @@ def probe(**options: Any) -> None:
         planet,
         directions,
         sun_elevation=sun_elevation,
+        sun_azimuth=options["sun_azimuth"] if moment is None else moment.sun_azimuth,
         sun_distance=sun_distance(planet, moment, options["sun_distance"]),
         altitude=options["altitude"],
         wavelengths=None if wavelengths is None else np.array(wavelengths),

@@ -31,7 +31,7 @@ class Directions:
     Attributes
     ----------
     text : tuple of (str, str)
-        Zenith angle and azimuth relative to the sun's as given, in degrees.
+        Zenith angle, and bearing less that of the sun, clockwise, as given, in degrees.
     zenith, azimuth : ndarray of float64, shape (direction,)
         The same. [rad]
     """
@@ -92,6 +92,7 @@ def probe(
     directions: Directions,
     *,
     sun_elevation: float,
+    sun_azimuth: float = math.pi,
     altitude: float = 0.0,
     sun_distance: float | None = None,
     wavelengths: Array | None = None,
@@ -111,6 +112,8 @@ def probe(
         Where to look.
     sun_elevation : float
         At the observer. [rad]
+    sun_azimuth : float, optional
+        Bearing of the sun, from which the directions' azimuths count clockwise. [rad]
     altitude : float, optional
         Of the observer. [km]
     sun_distance : float, optional
@@ -147,6 +150,7 @@ def probe(
         planet,
         sun_elevation,
         altitude,
+        sun_azimuth=sun_azimuth,
         sun_distance=sun_distance,
         wavelengths=wavelengths,
         method=fast,
@@ -212,6 +216,7 @@ def _colour(
             planet,
             sky.sun_elevation,
             sky.altitude,
+            sun_azimuth=sky.sun_azimuth,
             sun_distance=sky.sun_distance,
             method=sky.method,
         )
@@ -229,7 +234,12 @@ def _colour(
 def _illuminance(
     planet: Planet, sky: Sky, directions: Directions, clouds: Clouds
 ) -> dict[str, Array]:
-    lighting = Lighting(sky.sun_elevation, sun_distance=sky.sun_distance, method=sky.method)
+    lighting = Lighting(
+        sky.sun_elevation,
+        sun_azimuth=sky.sun_azimuth,
+        sun_distance=sky.sun_distance,
+        method=sky.method,
+    )
     settings = MapSettings(View(sky.altitude), lighting, clouds=clouds)
     light = light_of_scene(Scene(planet, settings))
     figures = {
