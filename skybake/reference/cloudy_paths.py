@@ -192,9 +192,7 @@ def _follow(scene, sun, place, h, direction, at_ground, weight, room, state):
         in_cloud = not at_ground and _cloud_share(clouds, each, total) > 0.5
         sunlit = _sunlit(scene, place, h, mu_s, sun, state)
         if sunlit > 0.0:
-            sent = max(0.0, mu_s) / math.pi
-            if not at_ground:
-                sent, _ = phase_and_lobe(air, each, total, direction, sun)
+            sent = _toward_observer(air, each, total, mu_s, direction, sun, at_ground)
             radiance += weight * sent * sunlit * transmittance_to_space(air, h, mu_s)
         promise = weight * look_up(guide, guide.ambient, h, mu_s)
         if order == 1:
@@ -279,3 +277,12 @@ def _sunlit(scene, place, h, mu_s, sun, state):
     if hits_ground(tangent_altitude(radius, h, mu_s), mu_s):
         return 0.0
     return clouds_transmittance(scene.clouds, radius, place, sun, state)
+
+
+@kernel
+def _toward_observer(air, each, total, mu_s, direction, sun, at_ground):
+    """Share of its sunlight that a vertex sends back along `direction`. [sr⁻¹]"""
+    if at_ground:
+        return max(0.0, mu_s) / math.pi
+    phase, _ = phase_and_lobe(air, each, total, direction, sun)
+    return phase

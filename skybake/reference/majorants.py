@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.cloud_fields.chart import tile_place, tile_stretch
-from skybake.cloud_fields.field import CONSTANT, SURFACE, CloudField
+from skybake.cloud_fields.field import LINEAR, SURFACE, CloudField
 from skybake.jit.kernel import kernel
 from skybake.reference.air import Air
 
@@ -45,7 +45,11 @@ class CloudBounds(NamedTuple):
 
 def bound_clouds(field: CloudField) -> CloudBounds:
     """Bound a layer's extinction from above."""
-    most = _most_in_voxels(field)
+    most, base = _most_in_voxels(field), float(field.base)
+    if field.kind == LINEAR:
+        # The outermost planes of voxels fade out beyond their own faces.
+        most = _dilate(np.pad(most, ((1, 1), (0, 0), (0, 0))))
+        base -= float(field.spacing[0])
     steps = [_voxels_per_cell(n, size) for n, size in zip(most.shape, field.spacing, strict=True)]
     # A last cell in z may reach beyond the voxels: rows and columns have to divide evenly.
     steps[0] = max(1, round(CELL / field.spacing[0]))
@@ -59,16 +63,14 @@ def bound_clouds(field: CloudField) -> CloudBounds:
     for n in range(2, FARTHEST + 1):
         around = _dilate(around)
         reach[around == 0.0] = n * cell.min()
-    return CloudBounds(_ROUNDING * bound, reach, cell, float(field.base))
+    return CloudBounds(_ROUNDING * bound, reach, cell, base)
 
 
 def _most_in_voxels(field: CloudField) -> npt.NDArray[np.float64]:
-    """Bound of the extinction between the faces of each voxel."""
+    """Extinction of each voxel, or its bound between nodes of a surface."""
     values = field.values.astype(np.float64)
-    if field.kind == CONSTANT:
-        return values
     if field.kind != SURFACE:
-        return _dilate(values)
+        return values
     depth = 0.5 - _least_distance(field, values) / field.edge
     inside = np.maximum(field.extinction[:-1], field.extinction[1:])[:, None, None]
     return inside * np.clip(depth, 0.0, 1.0)
