@@ -19,7 +19,7 @@ from skybake.reference.directions import (
     uniform,
 )
 from skybake.reference.guide import Guide, look_up
-from skybake.reference.paths import SURVIVAL, TOWARD_SUN, turn
+from skybake.reference.paths import SURVIVAL, turn, turn_density
 from skybake.reference.rays import (
     Cuts,
     altitude_on_ray,
@@ -49,6 +49,13 @@ from skybake.reference.tracking import (
 
 DUSK = 0.1
 """Cosine of the sun's zenith angle below which paths that leave the clouds are guided."""
+
+BRANCHES = 0.2
+"""Share of vertices at which a second path sets out around the sun: the narrow peak of droplets
+is never met by chance alone."""
+
+MOST_BRANCHES = 64
+"""Paths that may wait for being followed."""
 
 
 class CloudyScene(NamedTuple):
@@ -81,6 +88,8 @@ class _Room(NamedTuple):
     cuts: Cuts
     stretches: npt.NDArray[np.float64]
     coefficients: npt.NDArray[np.float64]
+    layers: npt.NDArray[np.float64]
+    branches: npt.NDArray[np.float64]
 
 
 def mean_cloudy_radiance(
@@ -94,7 +103,10 @@ def mean_cloudy_radiance(
     """Mean over `samples` paths from altitude `h` above the origin."""
     air = scene.air
     first, later = (new_cuts(air), new_stretches(air)), (new_cuts(air), new_stretches(air))
-    room = _Room(*first, *later, np.zeros(len(air.scattering)))
+    layers = np.zeros(len(air.scattering))
+    layers[-len(scene.clouds.fields) :] = 1.0 / len(scene.clouds.fields)
+    branches = np.empty((MOST_BRANCHES, 10))
+    room = _Room(*first, *later, np.zeros(len(air.scattering)), layers, branches)
     state = np.array([seed], np.uint64)
     return float(_mean_radiance(scene, sun, h, direction, samples, room, state))
 
@@ -178,51 +190,96 @@ def _follow(scene, sun, place, h, direction, at_ground, weight, room, state):
     weight : float
         Of the vertex, its albedo included.
     """
-    air, guide, clouds, each = scene.air, scene.guide, scene.clouds, room.coefficients
+    air, clouds, each = scene.air, scene.clouds, room.coefficients
     radiance = 0.0
-    first_weight = weight
-    first_promise = 0.0
+    first_weight, first_promise = weight, 0.0
     order = 1
-    while weight > 0.0:
-        up = vertical_at(air.r_bottom, place)
-        mu_s = dot(up, sun)
-        total = 0.0
-        for c in range(len(each)):
-            total += each[c]
-        in_cloud = not at_ground and _cloud_share(clouds, each, total) > 0.5
-        sunlit = _sunlit(scene, place, h, mu_s, sun, state)
-        if sunlit > 0.0:
-            sent = _toward_observer(air, each, total, mu_s, direction, sun, at_ground)
-            radiance += weight * sent * sunlit * transmittance_to_space(air, h, mu_s)
-        promise = weight * look_up(guide, guide.ambient, h, mu_s)
-        if order == 1:
-            first_promise = promise
-        survival = min(1.0, max(weight / first_weight, promise / first_promise) / SURVIVAL)
-        if survival < 1.0:
-            if uniform(state) >= survival:
-                return radiance
-            weight /= survival
-        if in_cloud:
-            direction, turned = _turn_in_cloud(air, each, total, direction, sun, sunlit, state)
-        else:
-            direction, turned = turn(
-                air, guide, each, total, h, up, direction, sun, at_ground, order, state
+    waiting = 0
+    while True:
+        mu_s = dot(vertical_at(air.r_bottom, place), sun)
+        if weight > 0.0:
+            sent = _toward_observer(air, each, mu_s, direction, sun, at_ground)
+            sunlit = _sunlit(scene, place, h, mu_s, sun, state) if sent > 0.0 else 0.0
+            if sunlit > 0.0:
+                radiance += weight * sent * sunlit * transmittance_to_space(air, h, mu_s)
+            promise = weight * look_up(scene.guide, scene.guide.ambient, h, mu_s)
+            if order == 1:
+                first_promise = promise
+            # Paths toward the sun are worth what the peak of a phase function sends back.
+            gain = max(1.0, 4.0 * math.pi * sent)
+            kept = max(gain * weight / first_weight, promise / first_promise) / SURVIVAL
+            if kept < 1.0:
+                weight = weight / kept if uniform(state) < kept else 0.0
+        if weight > 0.0:
+            direction, weight, waiting = _turn(
+                scene, sun, place, h, direction, at_ground, weight, order, waiting, room, state
             )
-        if turned <= 0.0:
-            return radiance
-        weight *= turned
+        if weight <= 0.0:
+            if waiting == 0:
+                return radiance
+            waiting -= 1
+            branch = room.branches[waiting]
+            place, h = (branch[0], branch[1], branch[2]), branch[3]
+            direction = (branch[4], branch[5], branch[6])
+            weight, order = branch[7], int(branch[8])
+            mu_s = branch[9]
         order += 1
         end, place, h, _ = fly(air, scene.peaks, clouds, place, direction, mu_s < DUSK, state)
-        if end == ESCAPES:
-            return radiance
         at_ground = end == MEETS_GROUND
+        if end == ESCAPES:
+            weight = 0.0
+            continue
         if end == LEAVES_CLOUDS:
             leap, place, h, at_ground = _leap(scene, sun, place, h, direction, order, room, state)
             weight *= leap
-            if weight <= 0.0:
-                return radiance
-        weight *= _collide(scene, room, place, h, at_ground, True, end != LEAVES_CLOUDS)
-    return radiance
+        if weight > 0.0:
+            weight *= _collide(scene, room, place, h, at_ground, True, end != LEAVES_CLOUDS)
+
+
+@kernel
+def _turn(scene, sun, place, h, direction, at_ground, weight, order, waiting, room, state):
+    """Next direction of a path and its weight, and how many paths wait: it may have branched."""
+    air, guide, each, layers = scene.air, scene.guide, room.coefficients, room.layers
+    up = vertical_at(air.r_bottom, place)
+    total = _sum(each)
+    in_cloud = not at_ground and total > 0.0 and _cloud_share(scene.clouds, each) > 0.5 * total
+    share = BRANCHES if waiting < MOST_BRANCHES else 0.0
+    if uniform(state) < share:
+        turned = draw_lobe(air, layers, 1.0, sun, state)
+        if in_cloud:
+            wanted, density = phase_and_lobe(air, each, total, direction, turned)
+        else:
+            wanted, density = turn_density(
+                air, guide, each, total, h, up, direction, sun, at_ground, order, turned
+            )
+        _, sun_lobe = phase_and_lobe(air, layers, 1.0, turned, sun)
+        branch = room.branches[waiting]
+        branch[0], branch[1], branch[2] = place
+        branch[3] = h
+        branch[4], branch[5], branch[6] = turned
+        branch[7] = weight * wanted / (density + share * sun_lobe)
+        branch[8] = order
+        branch[9] = dot(up, sun)
+        waiting += 1
+    if in_cloud:
+        turned = draw_lobe(air, each, total, direction, state)
+        wanted, density = phase_and_lobe(air, each, total, direction, turned)
+    else:
+        turned, _ = turn(air, guide, each, total, h, up, direction, sun, at_ground, order, state)
+        wanted, density = turn_density(
+            air, guide, each, total, h, up, direction, sun, at_ground, order, turned
+        )
+    _, sun_lobe = phase_and_lobe(air, layers, 1.0, turned, sun)
+    density += share * sun_lobe
+    return turned, weight * wanted / density if density > 0.0 else 0.0, waiting
+
+
+@kernel
+def _sum(values):
+    total = 0.0
+    for value in values:
+        total += value
+    return total
 
 
 @kernel
@@ -244,30 +301,12 @@ def _leap(scene, sun, place, h, direction, order, room, state):
 
 
 @kernel
-def _cloud_share(clouds, each, total):
-    """Share of what scatters at a vertex that is clouds."""
+def _cloud_share(clouds, each):
+    """Scattering coefficient of clouds among what scatters at a vertex. [km⁻¹]"""
     scattering = 0.0
     for i in range(len(each) - len(clouds.fields), len(each)):
         scattering += each[i]
-    return scattering / total if total > 0.0 else 0.0
-
-
-@kernel
-def _turn_in_cloud(air, each, total, direction, sun, sunlit, state):
-    """Next direction of a path, drawn around the last one or around the sun, and its weight.
-
-    What is drawn around the sun keeps the narrow peak of droplets from being met by chance;
-    deep in a cloud it would only spread the weights.
-    """
-    toward_sun = TOWARD_SUN * sunlit
-    axis = sun if uniform(state) < toward_sun else direction
-    turned = draw_lobe(air, each, total, axis, state)
-    wanted, lobe = phase_and_lobe(air, each, total, direction, turned)
-    density = (1.0 - toward_sun) * lobe
-    if toward_sun > 0.0:
-        _, sun_lobe = phase_and_lobe(air, each, total, turned, sun)
-        density += toward_sun * sun_lobe
-    return turned, wanted / density if density > 0.0 else 0.0
+    return scattering
 
 
 @kernel
@@ -280,9 +319,9 @@ def _sunlit(scene, place, h, mu_s, sun, state):
 
 
 @kernel
-def _toward_observer(air, each, total, mu_s, direction, sun, at_ground):
+def _toward_observer(air, each, mu_s, direction, sun, at_ground):
     """Share of its sunlight that a vertex sends back along `direction`. [sr⁻¹]"""
     if at_ground:
         return max(0.0, mu_s) / math.pi
-    phase, _ = phase_and_lobe(air, each, total, direction, sun)
+    phase, _ = phase_and_lobe(air, each, _sum(each), direction, sun)
     return phase
