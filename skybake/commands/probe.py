@@ -12,6 +12,11 @@ import click
 from skybake import input_files
 from skybake.commands.memory import check_memory
 from skybake.commands.options import values
+from skybake.commands.options.clouds import (
+    check_clouds,
+    clouds_from_options,
+    clouds_options,
+)
 from skybake.commands.options.observer import (
     altitude_option,
     sun_distance_needs,
@@ -44,6 +49,7 @@ def _wavelengths(text: str) -> tuple[float, ...]:
 @moment_options
 @sun_distance_option()
 @altitude_option()
+@clouds_options(quality="high")
 @click.option(
     "--directions",
     metavar="FILE.csv|-",
@@ -119,6 +125,7 @@ def probe(**options: Any) -> None:
     from skybake.sky.sky import WAVELENGTHS
 
     planet = world_from_options(context)
+    check_clouds(context, planet)
     sun_elevation = options["sun_elevation"] if moment is None else moment.sun_elevation
     source: Path | None = options["directions"]
     if source is None:
@@ -148,6 +155,7 @@ def probe(**options: Any) -> None:
         illuminance=options["illuminance"],
         method=options["method"],
         samples=options["samples"],
+        clouds=clouds_from_options(context),
     )
     output: Path | None = options["output"]
     if output is None:

@@ -14,7 +14,7 @@ from skybake.angles import cosine_between
 from skybake.errors import InputError, UnsolvableError
 from skybake.image.light import light_of_scene
 from skybake.image.scene import DARK, ROUNDING, Scene, luminous_weights
-from skybake.image.settings import Lighting, MapSettings, View
+from skybake.image.settings import Clouds, Lighting, MapSettings, View
 from skybake.optics.medium import Array
 from skybake.preset import Planet
 from skybake.reference.estimate import radiance
@@ -99,6 +99,7 @@ def probe(
     illuminance: bool = False,
     method: str = "full",
     samples: int = 10_000,
+    clouds: Clouds | None = None,
 ) -> str:
     """Radiances of a planet's sky as CSV.
 
@@ -125,6 +126,8 @@ def probe(
         `reference` traces paths and adds the standard errors.
     samples : int, optional
         Paths for each direction and wavelength of the reference.
+    clouds : Clouds, optional
+        When clouds are seen, if the world has any.
 
     Returns
     -------
@@ -158,7 +161,7 @@ def probe(
     if not per_irradiance:
         columns |= _colour(planet, sky, directions, method, samples, values)
     if illuminance:
-        columns |= _illuminance(planet, sky, directions)
+        columns |= _illuminance(planet, sky, directions, clouds or Clouds())
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow([*COLUMNS, *columns])
@@ -223,9 +226,11 @@ def _colour(
     }
 
 
-def _illuminance(planet: Planet, sky: Sky, directions: Directions) -> dict[str, Array]:
+def _illuminance(
+    planet: Planet, sky: Sky, directions: Directions, clouds: Clouds
+) -> dict[str, Array]:
     lighting = Lighting(sky.sun_elevation, sun_distance=sky.sun_distance, method=sky.method)
-    settings = MapSettings(View(sky.altitude), lighting)
+    settings = MapSettings(View(sky.altitude), lighting, clouds=clouds)
     light = light_of_scene(Scene(planet, settings))
     figures = {
         "direct_normal_illuminance_lux": light.direct_normal_illuminance,
