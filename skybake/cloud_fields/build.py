@@ -57,7 +57,7 @@ def empty_field() -> CloudField:
         condensation=0.0,
         shift=np.zeros(1),
         largest_blur=0.0,
-        displacement=np.zeros((0, 7)),
+        displacement=np.zeros((0, 9)),
         noise=np.zeros((1, 1, 1), np.int8),
         clearance=np.full((1, 1, 1), 1e3, np.float32),
         block=np.ones(3),
@@ -81,8 +81,8 @@ def _at_time(field: CloudField, layer: CloudLayer, time_s: float) -> CloudField:
     north = -layer.wind_speed * math.cos(layer.wind_from) * time_s
     origin = field.origin - np.array([east, north])
     displacement = field.displacement.copy()
-    cycles = np.maximum(np.rint(_RISING * EVOLUTION / displacement[:, 3]), 1.0)
+    cycles = np.maximum(np.rint(_RISING * EVOLUTION * displacement[:, 5]), 1.0)
     # Of the phase only the fraction counts, which is exact for whole periods.
     phase = math.fmod(time_s, EVOLUTION) / EVOLUTION
-    displacement[:, 6] = np.mod(displacement[:, 6] - cycles * phase, 1.0)
+    displacement[:, 8] = np.mod(displacement[:, 8] - cycles * phase, 1.0)
     return field._replace(origin=np.mod(origin, field.period), displacement=displacement)

@@ -53,7 +53,7 @@ def cirrus(
         widest_edge=_WIDTH,
         condensation=base - 10.0 * depth,
         displacement=displacements(
-            extent[1], [(0.03 * _WIDTH, 0.5 * size), (0.012 * _WIDTH, 0.12 * size)], seed
+            extent[::-1], [(0.03 * _WIDTH, 0.5 * size), (0.012 * _WIDTH, 0.12 * size)], seed
         ),
         noise=billows(seed),
     )

@@ -87,8 +87,8 @@ def _outside(field, altitude):
 @kernel
 def _of_block(field, x, y, altitude):
     levels, rows, columns = field.clearance.shape
-    k = int(math.floor((altitude - field.base) / field.block[0]))
-    k = min(max(k, 0), levels - 1)
-    j = int(math.floor(y / field.block[1])) % rows
-    i = int(math.floor(x / field.block[2])) % columns
-    return float(field.clearance[k, j, i])
+    fx, fy = x / field.period[0], y / field.period[1]
+    i, j = (fx - math.floor(fx)) * columns, (fy - math.floor(fy)) * rows
+    k = min(max((altitude - field.base) / field.block[0], 0.0), levels - 0.5)
+    i, j = min(i, columns - 0.5), min(j, rows - 0.5)
+    return float(field.clearance[np.uint32(k), np.uint32(j), np.uint32(i)])

@@ -65,7 +65,7 @@ def cumulus(
         widest_edge=0.2 * size,
         condensation=base,
         displacement=displacements(
-            period, [(0.075 * size, 0.62 * size), (0.02 * size, 0.14 * size), (0.005 * size, 0.036 * size)], seed
+            (period, period), [(0.075 * size, 0.62 * size), (0.02 * size, 0.14 * size), (0.005 * size, 0.036 * size)], seed
         ),
         noise=billows(seed),
     )

@@ -117,7 +117,7 @@ def deck(
         widest_edge=0.6 * depth,
         condensation=base - 10.0 * depth,
         displacement=displacements(
-            period, [(depth * amplitude, size * length) for amplitude, length in look.billows], seed
+            extent, [(depth * amplitude, size * length) for amplitude, length in look.billows], seed
         ),
         noise=billows(seed),
     )
@@ -128,7 +128,7 @@ def _relative_height(look: Deck, cover: float, size: float, period: float, seed:
     """Return heights in the depth, whose quantile at the share without cloud is 0."""
     extent = (period, period)
     spacing = period / _COLUMNS
-    swell = _map(_TURBULENCE, (1.5 * spacing, 2.0 * size), extent, (seed, 7))
+    swell = _map(_TURBULENCE, (2.5 * spacing, 2.0 * size), extent, (seed, 7))
     weather = _map(_TURBULENCE, (2.0 * size, 0.3 * period), extent, (seed, 8))
     cells = _cells(look, size, period, seed)
     thick = look.cells * cells + look.swell * swell + look.weather * weather

@@ -52,10 +52,10 @@ class CloudField(NamedTuple):
         that grows with the square of the index up to `largest_blur`. [km]
     largest_blur : float
         Beyond which nothing changes. [km]
-    displacement : ndarray of float64, shape (noise, 7)
-        By which the surface is displaced: of each noise the amplitude [km], its periods in that
-        of the tile along a line and across it, both whole numbers, its period in height [km],
-        and the shift of its x, y and z [periods].
+    displacement : ndarray of float64, shape (noise, 9)
+        By which the surface is displaced: of each noise the amplitude [km]; how many of its
+        periods lie along x and y, first for its own x, then for its y, and along z for its z
+        [km⁻¹]; and the shift of its x, y and z [periods]. Whole periods fit into the tile.
     noise : ndarray of int8, shape (n, n, n)
         Periodic, of zero mean, from -127 to 127 for -1 to 1.
     clearance : ndarray of float32, shape (z, y, x)

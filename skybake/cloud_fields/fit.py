@@ -18,8 +18,9 @@ LEAST_DEPTH = 0.2
 below 1."""
 
 _BLURS = 9
-_COLUMNS = 192
-_FEW_COLUMNS = 96
+# Prime, so that columns meet nodes and noise at every phase.
+_COLUMNS = 191
+_FEW_COLUMNS = 97
 _NODES_PER_BLOCK = (3, 6, 6)
 _HALVINGS = 14
 
@@ -100,7 +101,7 @@ def _unfitted(surface: Surface) -> CloudField:
     levels, rows, columns = surface.nodes.shape
     dz, dy, dx = (float(each) for each in surface.spacing)
     distance = np.clip(np.rint(surface.nodes / STEP), -32767, 32767).astype(np.int16)
-    periods = surface.displacement[:, 3]
+    periods = 1.0 / surface.displacement[:, 5]
     return CloudField(
         kind=SURFACE,
         values=np.zeros((1, 1, 1), np.float32),
@@ -195,8 +196,8 @@ def _mean_keeping_shifts(field: CloudField) -> npt.NDArray[np.float64]:
 def _with_clearance(field: CloudField) -> CloudField:
     """Find the blocks that no displacement and no blur carries the surface into."""
     blurs = field.largest_blur * np.linspace(0.0, 1.0, 4 * _BLURS - 3) ** 2
-    amplitudes, periods = field.displacement[:, 0], field.displacement[:, 3]
-    noise = np.maximum(amplitudes * (1.0 - 4.0 * blurs[:, None] / periods), 0.0).sum(1)
+    amplitudes, waves = field.displacement[:, 0], field.displacement[:, 5]
+    noise = np.maximum(amplitudes * (1.0 - 4.0 * blurs[:, None] * waves), 0.0).sum(1)
     edges = np.minimum(field.edge + blurs, field.widest_edge)
     # Between these blurs the reach bends; a step more covers what it may exceed them by.
     reach = float(np.max(noise + 0.5 * edges)) + float(np.abs(np.diff(noise)).max(initial=0.0))

@@ -12,7 +12,7 @@ from skybake.cloud_fields.field import CONSTANT, SURFACE, CloudField, clearance_
 from skybake.jit.kernel import kernel
 from skybake.jit.workers import ALL_CPUS, Workers
 
-_SAMPLES = 3
+_SAMPLES = 2
 
 
 class ExtinctionGrid(NamedTuple):
@@ -51,7 +51,7 @@ def light_grid(
     Returns
     -------
     ExtinctionGrid
-        Of voxels of a file, exactly the mean; near surfaces that of 27 points.
+        Of voxels of a file, exactly the mean; near surfaces that of 8 points.
     """
     extent = np.array([field.top - field.base, field.period[1], field.period[0]])
     counts = np.maximum(np.rint(extent / spacing), 1.0).astype(int)

@@ -19,23 +19,26 @@ def dyadic(length: float) -> float:
 
 
 def displacements(
-    period: float, scales: list[tuple[float, float]], seed: int
+    period: tuple[float, float], scales: list[tuple[float, float]], seed: int
 ) -> npt.NDArray[np.float64]:
     """Return the rows of `CloudField.displacement`.
 
     Parameters
     ----------
-    period : float
-        Of the square tile. [km]
+    period : tuple of float
+        Of the tile along x and y. [km]
     scales : list of tuple of float
-        Amplitude and period of each noise, from coarse to fine. [km]
+        Amplitude and period of each noise, from coarse to fine, of which as many periods as are
+        whole fit into the tile. [km]
     seed : int
         Another one, other shifts.
     """
     rng = np.random.default_rng([seed, 5])
-    rows = []
-    for turn, (amplitude, length) in zip(_TURNS, scales, strict=False):
-        along = max(1, round(period / length * math.cos(turn)))
-        across = round(period / length * math.sin(turn))
-        rows.append([amplitude, along, across, period / math.hypot(along, across), *rng.random(3)])
-    return np.array(rows).reshape(-1, 7)
+    width, height = period
+    rows = np.empty((len(scales), 9))
+    for row, turn, (amplitude, length) in zip(rows, _TURNS, scales, strict=False):
+        cos, sin = math.cos(turn) / length, math.sin(turn) / length
+        along = max(1, round(width * cos)) / width, round(height * sin) / height
+        across = -round(width * sin) / width, max(1, round(height * cos)) / height
+        row[:] = amplitude, *along, *across, 1.0 / length, *rng.random(3)
+    return rows

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
+from skybake.cloud_fields.noise import BILLOW_SIZE
 from skybake.jit.kernel import kernel
 
 STEP = 2.0**-14
@@ -105,17 +108,19 @@ def node_distance(field, x, y, fz):
     nodes = field.distance
     _, rows, columns = nodes.shape
     fy, fx = y / field.spacing[1], x / field.spacing[2]
-    k, j, i = int(fz), int(fy), int(fx)
+    # Indices without a sign need no check for a negative one.
+    k, j, i = np.uint32(fz), np.uint32(fy), np.uint32(fx)
     u, v, w = fx - i, fy - j, fz - k
     # Rounding may put a point of the last cell on the period itself.
-    i = 0 if i >= columns else i
-    j = 0 if j >= rows else j
-    east = i + 1 if i + 1 < columns else 0
-    north = j + 1 if j + 1 < rows else 0
+    i = np.uint32(0) if i >= columns else i
+    j = np.uint32(0) if j >= rows else j
+    east = np.uint32(i + 1) if i + 1 < columns else np.uint32(0)
+    north = np.uint32(j + 1) if j + 1 < rows else np.uint32(0)
+    up = np.uint32(k + 1)
     a = nodes[k, j, i] + u * (nodes[k, j, east] - nodes[k, j, i])
     b = nodes[k, north, i] + u * (nodes[k, north, east] - nodes[k, north, i])
-    c = nodes[k + 1, j, i] + u * (nodes[k + 1, j, east] - nodes[k + 1, j, i])
-    d = nodes[k + 1, north, i] + u * (nodes[k + 1, north, east] - nodes[k + 1, north, i])
+    c = nodes[up, j, i] + u * (nodes[up, j, east] - nodes[up, j, i])
+    d = nodes[up, north, i] + u * (nodes[k + 1, north, east] - nodes[k + 1, north, i])
     a += v * (b - a)
     c += v * (d - c)
     return STEP * (a + w * (c - a))
@@ -124,28 +129,22 @@ def node_distance(field, x, y, fz):
 @kernel
 def _amplitude(field, q, blur):
     """Amplitude of a noise, 0 or less where blur leaves nothing of it. [km]"""
-    return field.displacement[q, 0] * (1.0 - _FADES * blur / field.displacement[q, 3])
+    return field.displacement[q, 0] * (1.0 - _FADES * blur * field.displacement[q, 5])
 
 
 @kernel
 def _noise(field, q, x, y, z):
-    """Trilinear noise at a point, in [-1, 1].
-
-    Its lattice is turned so that whole periods of it fit into the tile's: that of x and y are
-    the two legs of a right triangle in lattice periods.
-    """
-    along = field.displacement[q, 1] / field.period[0]
-    across = field.displacement[q, 2] / field.period[1]
+    """Trilinear noise at a point, in [-1, 1]."""
+    row = field.displacement[q]
     volume = field.noise
-    size = volume.shape[0]
-    fx = along * x + across * y + field.displacement[q, 4]
-    fy = along * y - across * x + field.displacement[q, 5]
-    fz = z / field.displacement[q, 3] + field.displacement[q, 6]
-    fx, fy = (fx - math.floor(fx)) * size, (fy - math.floor(fy)) * size
-    fz = (fz - math.floor(fz)) * size
+    fx = row[1] * x + row[2] * y + row[6]
+    fy = row[3] * x + row[4] * y + row[7]
+    fz = row[5] * z + row[8]
+    fx, fy = (fx - math.floor(fx)) * BILLOW_SIZE, (fy - math.floor(fy)) * BILLOW_SIZE
+    fz = (fz - math.floor(fz)) * BILLOW_SIZE
     i, j, k = int(fx), int(fy), int(fz)
     u, v, w = fx - i, fy - j, fz - k
-    mask = size - 1
+    mask = BILLOW_SIZE - 1
     i, j, k = i & mask, j & mask, k & mask
     east, north, up = (i + 1) & mask, (j + 1) & mask, (k + 1) & mask
     a = volume[k, j, i] + u * (volume[k, j, east] - volume[k, j, i])
