@@ -15,9 +15,9 @@ from skybake.errors import InputError, UnsolvableError
 from skybake.image.light import light_of_scene
 from skybake.image.scene import DARK, ROUNDING, Scene, luminous_weights
 from skybake.image.settings import Clouds, Lighting, MapSettings, View
+from skybake.inspect.traced import traced_radiance
 from skybake.optics.medium import Array
 from skybake.preset import Planet
-from skybake.reference.estimate import radiance
 from skybake.sky.sky import WAVELENGTHS, Sky
 
 COLUMNS = ("view_zenith_deg", "relative_azimuth_deg")
@@ -156,16 +156,17 @@ def probe(
         method=fast,
     )
     columns: dict[str, Array] = {}
-    values, errors = _radiance(sky, directions, method, samples)
+    seen = clouds or Clouds()
+    values, errors = _radiance(planet, sky, directions, method, samples, seen)
     scale = np.ones(sky.wavelengths.size) if per_irradiance else sky.irradiance
     for k, wavelength in enumerate(sky.wavelengths):
         columns[f"radiance_{wavelength:g}nm"] = values[:, k] * scale[k]
         if errors is not None:
             columns[f"stderr_{wavelength:g}nm"] = errors[:, k] * scale[k]
     if not per_irradiance:
-        columns |= _colour(planet, sky, directions, method, samples, values)
+        columns |= _colour(planet, sky, directions, method, samples, seen, values)
     if illuminance:
-        columns |= _illuminance(planet, sky, directions, clouds or Clouds())
+        columns |= _illuminance(planet, sky, directions, seen)
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow([*COLUMNS, *columns])
@@ -175,18 +176,12 @@ def probe(
 
 
 def _radiance(
-    sky: Sky, directions: Directions, method: str, samples: int
+    planet: Planet, sky: Sky, directions: Directions, method: str, samples: int, clouds: Clouds
 ) -> tuple[Array, Array | None]:
     """Radiance per unit irradiance and, by the reference, its standard error. [sr⁻¹]"""
     if method == REFERENCE:
-        return radiance(
-            sky.medium,
-            sky.altitude,
-            sky.sun_elevation,
-            directions.zenith,
-            directions.azimuth,
-            samples=samples,
-        )
+        zenith, azimuth = directions.zenith, directions.azimuth
+        return traced_radiance(planet, sky, zenith, azimuth, samples, clouds.time)
     sun_zenith = sky.source.zenith
     mu, sine = np.cos(directions.zenith), np.sin(directions.zenith)
     nu = cosine_between(mu, sine, math.cos(sun_zenith), math.sin(sun_zenith), directions.azimuth)
@@ -207,7 +202,13 @@ def _without_rounding(radiance: Array) -> Array:
 
 
 def _colour(
-    planet: Planet, sky: Sky, directions: Directions, method: str, samples: int, values: Array
+    planet: Planet,
+    sky: Sky,
+    directions: Directions,
+    method: str,
+    samples: int,
+    clouds: Clouds,
+    values: Array,
 ) -> dict[str, Array]:
     """Luminance and chromaticity, from the renderer's own wavelengths."""
     own = np.array(planet.wavelengths or WAVELENGTHS)
@@ -220,7 +221,7 @@ def _colour(
             sun_distance=sky.sun_distance,
             method=sky.method,
         )
-        values, _ = _radiance(sky, directions, method, samples)
+        values, _ = _radiance(planet, sky, directions, method, samples, clouds)
     xyz = values @ luminous_weights(sky)
     total = xyz.sum(axis=1)
     total[total == 0.0] = math.nan

@@ -76,8 +76,9 @@ def radiance(
     The first ray is drawn twice: where the air or the ground sends light back, guided as
     without clouds, and where clouds do. Later flights end in null collisions with bounds of the
     extinction (Woodcock et al. 1965); transmittances of clouds toward the sun are products over
-    such collisions (Novák et al. 2014), those of the air exact. Where the sun is behind thin
-    cloud the error's distribution has a long tail.
+    such collisions (Novák et al. 2014), those of the air exact. At a share of the vertices a
+    second path sets out toward the sun, and both are weighted by the balance heuristic. Where
+    the sun is behind thin cloud the error's distribution has a long tail.
     """
     sun, views = _directions(altitude, sun_elevation, sun_bearing, zenith, bearing)
     scenes = _scenes(medium, fields, phases)
@@ -149,7 +150,7 @@ def _directions(
     angle, azimuth = np.broadcast_arrays(
         np.atleast_1d(np.asarray(zenith, dtype=np.float64)), bearing
     )
-    named: dict[str, npt.ArrayLike] = {
+    named: dict[str, float | Array] = {
         "altitude": altitude,
         "sun_elevation": sun_elevation,
         "sun_bearing": sun_bearing,

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from skybake.cloud_fields.chart import tile_place, tile_stretch
 from skybake.cloud_fields.field import LINEAR, SURFACE, CloudField
+from skybake.cloud_fields.surface import STEP
 from skybake.jit.kernel import kernel
 from skybake.reference.air import Air
 
@@ -68,21 +69,21 @@ def bound_clouds(field: CloudField) -> CloudBounds:
 
 def _most_in_voxels(field: CloudField) -> npt.NDArray[np.float64]:
     """Extinction of each voxel, or its bound between nodes of a surface."""
-    values = field.values.astype(np.float64)
     if field.kind != SURFACE:
-        return values
-    depth = 0.5 - _least_distance(field, values) / field.edge
+        return field.values.astype(np.float64)
+    width = min(field.edge, field.widest_edge)
     inside = np.maximum(field.extinction[:-1], field.extinction[1:])[:, None, None]
-    return inside * np.clip(depth, 0.0, 1.0)
+    bound: npt.NDArray[np.float64] = inside * np.clip(0.5 - _least_distance(field) / width, 0, 1)
+    return bound
 
 
-def _least_distance(field: CloudField, values: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """Least distance to the displaced surface in each voxel, whose corners are nodes."""
-    least = np.minimum(values[:-1], values[1:])
+def _least_distance(field: CloudField) -> npt.NDArray[np.float64]:
+    """Least distance to the displaced surface in each voxel, whose corners are nodes. [km]"""
+    least = np.minimum(field.distance[:-1], field.distance[1:])
     for axis in (1, 2):
         least = np.minimum(least, np.roll(least, -1, axis))
-    swing = float(np.abs(field.noise).max()) if field.noise.size else 0.0
-    return least - swing * float(np.abs(field.displacement[:, 0]).sum())
+    swing = float(np.abs(field.displacement[:, 0]).sum())
+    return least * STEP - float(field.shift[0]) - swing
 
 
 def _voxels_per_cell(count: int, size: float) -> int:

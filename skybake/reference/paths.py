@@ -147,7 +147,7 @@ def turn(air, guide, each, total, h, up, direction, sun, at_ground, order, state
 
 @kernel
 def turn_density(air, guide, each, total, h, up, direction, sun, at_ground, order, turned):
-    """What a vertex sends back of light from `turned`, and the density of drawing that."""
+    """Return what a vertex sends back of light from `turned`, and the density of drawing that."""
     toward_sun = TOWARD_SUN / order if total > 0.0 else 0.0
     guided = GUIDED / order
     if at_ground:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from skybake.cloud_fields.build import build_field, empty_field
 from skybake.cloud_fields.field import CONSTANT, LINEAR, CloudField
 from skybake.optics.medium import Medium
 from skybake.optics.phase import scattering_angles
+from skybake.preset import load_preset
 from tests.media import plain_medium
 from tests.truth import TRUTH_FOLDER, henyey_greenstein, truth_medium
 
@@ -24,17 +26,14 @@ def voxels(
 ) -> CloudField:
     """A layer of voxels by z, y and x, in km^-1 and km."""
     beyond = 0.5 * spacing[0] if kind == LINEAR else 0.0
-    return CloudField(
+    return empty_field()._replace(
         kind=kind,
         values=np.ascontiguousarray(extinction, dtype=np.float32),
         spacing=np.array(spacing),
+        period=np.array([spacing[2], spacing[1]]) * extinction.shape[:0:-1],
         origin=np.array(origin),
         base=base,
         top=base + len(extinction) * spacing[0] + beyond,
-        extinction=np.empty(0),
-        edge=0.0,
-        displacement=np.empty((0, 5)),
-        noise=np.empty((0, 0, 0), np.float32),
     )
 
 
@@ -56,6 +55,11 @@ def linear_cumulus() -> CloudField:
         values, base = arrays["sigma"], float(arrays["zb"])
         spacing = tuple(float(arrays[name]) for name in ("dz", "dx", "dx"))
     return voxels(values, spacing, base, kind=LINEAR)
+
+
+def preset_cumulus() -> CloudField:
+    """Cumuli with a surface that noise displaces."""
+    return build_field(load_preset("earth-fair").clouds[0])
 
 
 def cloud_table(name: str) -> np.ndarray:

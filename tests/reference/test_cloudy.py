@@ -22,6 +22,7 @@ from tests.reference.cloud_scenes import (
     cumulus,
     deck,
     linear_cumulus,
+    preset_cumulus,
     vacuum,
     voxels,
 )
@@ -235,7 +236,7 @@ def bound_and_extinctions(field, bounds, radius, place, offsets, out):
     return most
 
 
-@pytest.mark.parametrize("field", [cumulus(), linear_cumulus()])
+@pytest.mark.parametrize("field", [cumulus(), linear_cumulus(), preset_cumulus()])
 def test_extinction_is_nowhere_above_its_bound(field):
     random = np.random.default_rng(1)
     bounds = bound_clouds(field)
