@@ -9,6 +9,7 @@ from pathlib import Path
 
 from skybake.inspect.summary import summarise
 from skybake.preset import load_preset, preset_names
+from skybake.preset.cloud_kinds import DEFAULTS
 from skybake.preset.constituents import GASES
 from skybake.preset.tables import table_columns
 
@@ -58,10 +59,30 @@ def gases_line() -> str:
     return f"Gases of a composition: {', '.join(f'`{gas}`' for gas in GASES)}.\n"
 
 
+def clouds_table() -> str:
+    """What kinds of clouds are like unless a preset says otherwise."""
+    head = ("kind", *(f"`{key}`" for key in _CLOUD_KEYS), "wind [m/s]")
+    return _table(
+        head,
+        (
+            (
+                f"`{kind}`",
+                *(f"{value:g}" for value in usual[:5]),
+                f'`"{usual.phase}"`',
+                f"{usual.wind:g}",
+            )
+            for kind, usual in DEFAULTS.items()
+        ),
+    )
+
+
+_CLOUD_KEYS = ("base_km", "depth_km", "size_km", "cover", "optical_depth", "phase")
+
 PARTS: dict[str, Callable[[], str]] = {
     "presets": presets_table,
     "tables": tables_table,
     "gases": gases_line,
+    "clouds": clouds_table,
 }
 
 

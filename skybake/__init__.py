@@ -29,13 +29,14 @@ if TYPE_CHECKING:
     from skybake.image.light import Light
     from skybake.image.picture_settings import PictureSettings
     from skybake.image.scene import Scene
-    from skybake.image.settings import Encoding, Lighting, MapSettings, View, map_settings
+    from skybake.image.settings import Clouds, Encoding, Lighting, MapSettings, View, map_settings
     from skybake.jit.workers import Workers
     from skybake.optics.changes import PresetChanges
     from skybake.pipeline import Pipeline, Sky
     from skybake.preset import (
         Absorber,
         Aerosol,
+        CloudLayer,
         Coefficients,
         Constituent,
         CornetteShanksPhase,
@@ -54,6 +55,7 @@ if TYPE_CHECKING:
         TabulatedPhase,
         TabulatedProfile,
         TentProfile,
+        Tile,
         load_preset,
         preset_names,
     )
@@ -83,6 +85,8 @@ __all__ = [
     "ArgumentError",
     "Baked",
     "CancelledError",
+    "CloudLayer",
+    "Clouds",
     "Coefficients",
     "ColourSpace",
     "Constituent",
@@ -133,6 +137,7 @@ __all__ = [
     "TabulatedPhase",
     "TabulatedProfile",
     "TentProfile",
+    "Tile",
     "TimeSpan",
     "View",
     "Workers",
@@ -155,6 +160,8 @@ _HOMES = {
     "ArgumentError": "skybake.errors",
     "Baked": "skybake.baking",
     "CancelledError": "skybake.errors",
+    "CloudLayer": "skybake.preset",
+    "Clouds": "skybake.image.settings",
     "Coefficients": "skybake.preset",
     "ColourSpace": "skybake.colour.space",
     "Constituent": "skybake.preset",
@@ -206,6 +213,7 @@ _HOMES = {
     "TabulatedPhase": "skybake.preset",
     "TabulatedProfile": "skybake.preset",
     "TentProfile": "skybake.preset",
+    "Tile": "skybake.preset",
     "TimeSpan": "skybake.ephemeris.moment",
     "View": "skybake.image.settings",
     "Workers": "skybake.jit.workers",

@@ -17,11 +17,22 @@ _RADIANS = {
 }
 _KILOMETRES = {"m": 1e-3, "km": 1.0, "ft": 0.3048e-3, "mi": 1.609344}
 
+_KILOMETRES_PER_SECOND = {
+    "m/s": 1e-3,
+    "km/h": 1.0 / 3600.0,
+    "kn": 1.852 / 3600.0,
+    "mph": 1.609344 / 3600.0,
+}
+_GRAMS_PER_SQUARE_METRE = {"g/m2": 1.0, "kg/m2": 1e3}
+_MICROMETRES = {"um": 1.0, "mm": 1e3}
+
 _DIGITS = 17  # of a double
 
 _SECONDS = {"s": 1.0, "min": 60.0, "h": 3600.0, "d": 86_400.0}
 
-_QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-zA-Z°]*)", re.ASCII)
+_QUANTITY = re.compile(
+    r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-zA-Z°][a-zA-Z0-9/°]*)?", re.ASCII
+)
 _DURATION_PART = r"([0-9]+\.?[0-9]*|\.[0-9]+)(s|min|h|d)"
 
 # A mega, a mile or a nautical mile rather than a metre.
@@ -91,6 +102,60 @@ def parse_column(text: str) -> float:
         If the text is no finite number with this unit.
     """
     return _parse(text, {"DU": 1.0}, bare="DU", quantity="a column of gas", example="320DU")
+
+
+def parse_speed(text: str) -> float:
+    """Read a speed such as ``8m/s``, ``30km/h`` or ``8``.
+
+    Parameters
+    ----------
+    text : str
+        A number and a unit: m/s, km/h, kn or mph; a bare number is in m/s.
+
+    Returns
+    -------
+    float
+        The speed. [km s⁻¹]
+
+    Raises
+    ------
+    InputError
+        If the text is no finite number with one of these units.
+    """
+    return _parse(text, _KILOMETRES_PER_SECOND, bare="m/s", quantity="a speed", example="8m/s")
+
+
+def parse_density(text: str) -> float:
+    """Read a mass over an area such as ``100g/m2`` or ``0.1kg/m2``; a bare number is in g/m2.
+
+    Returns
+    -------
+    float
+        The mass over an area. [g m⁻²]
+
+    Raises
+    ------
+    InputError
+        If the text is no finite number with one of these units.
+    """
+    units = _GRAMS_PER_SQUARE_METRE
+    return _parse(text, units, bare="g/m2", quantity="a mass over an area", example="100g/m2")
+
+
+def parse_micrometres(text: str) -> float:
+    """Read the size of a particle such as ``10um``; a bare number is in micrometres.
+
+    Returns
+    -------
+    float
+        The size. [um]
+
+    Raises
+    ------
+    InputError
+        If the text is no finite number with this unit.
+    """
+    return _parse(text, _MICROMETRES, bare="um", quantity="a size", example="10um")
 
 
 def parse_duration(text: str) -> float:

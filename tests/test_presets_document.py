@@ -8,8 +8,10 @@ import pytest
 
 from docs.make_presets import filled
 from skybake.preset import load_preset
+from skybake.preset.clouds_model import KINDS
 from skybake.preset.constituents import _READERS, PROFILES
 from skybake.preset.extend import TOP_KEYS
+from skybake.preset.particles import PARTICLES
 from skybake.preset.phases import PHASES
 from tests.cli.runs import invoke, listing
 
@@ -49,10 +51,18 @@ def test_a_world_in_ten_lines_is_checked_and_rendered(tmp_path, monkeypatch):
 
 
 def test_a_world_from_nothing_loads(tmp_path):
-    (tmp_path / "own.toml").write_text(WORLDS[1], encoding="utf-8")
+    (tmp_path / "own.toml").write_text(WORLDS[-1], encoding="utf-8")
     planet = load_preset(tmp_path / "own.toml")
     assert [one.name for one in planet.constituents] == ["air", "dust", "smoke"]
     assert planet.data_quality
+
+
+def test_its_clouds_load(tmp_path):
+    (tmp_path / "own.toml").write_text(WORLDS[1], encoding="utf-8")
+    low, high = load_preset(tmp_path / "own.toml").clouds
+    assert (low.kind, high.kind) == ("cumulus", "cirrus")
+    assert low.cover == 3 / 8
+    assert low.optical_depth == pytest.approx(3 * 0.12 / (2 * 1000 * 8e-6))
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -66,7 +76,7 @@ def test_its_commands_run(tmp_path, monkeypatch, command):
 
 
 def test_every_key_and_kind_is_described():
-    words = set(re.findall(r"`\"?([a-z_-]+)", TEXT))
+    words = set(re.findall(r"`\"?([a-z0-9_-]+)", TEXT))
     words |= set(re.findall(r"kind = \"([a-z-]+)\"", TEXT))
     words |= {key.split(".")[0] for key in words}
-    assert {*TOP_KEYS, "extends", *_READERS, *PROFILES, *PHASES} <= words
+    assert {*TOP_KEYS, "extends", *_READERS, *KINDS, *PARTICLES, *PROFILES, *PHASES} <= words

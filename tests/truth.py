@@ -16,7 +16,7 @@ Array = npt.NDArray[np.float64]
 TRUTH_WAVELENGTHS = np.array([680.0, 550.0, 440.0])
 """Wavelengths of the tables and of every `truth_medium`. [nm]"""
 
-_FOLDER = Path(__file__).parent / "data" / "reference"
+TRUTH_FOLDER = Path(__file__).parent / "data" / "reference"
 _SHORT_NAMES = {
     "radiance_per_unit_irradiance_sr-1": "radiance",
     "order1_part_deterministic": "order1",
@@ -79,9 +79,9 @@ def cornette_shanks(theta: Array, g: float) -> Array:
 
 @functools.cache
 def _load(pattern: str) -> np.ndarray:
-    paths = sorted(_FOLDER.glob(pattern))
+    paths = sorted(TRUTH_FOLDER.glob(pattern))
     if not paths:
-        msg = f"{_FOLDER}: no table matches {pattern}"
+        msg = f"{TRUTH_FOLDER}: no table matches {pattern}"
         raise FileNotFoundError(msg)
     return np.concatenate([_load_table(path) for path in paths])
 
@@ -190,7 +190,7 @@ def _mars_a() -> Medium:
 
 def _mars_mie() -> Medium:
     grey = _mars_a()
-    table = np.genfromtxt(_FOLDER / "mars_dust_mie_phase.csv", delimiter=",", skip_header=1)
+    table = np.genfromtxt(TRUTH_FOLDER / "mars_dust_mie_phase.csv", delimiter=",", skip_header=1)
     mu, cosine = np.cos(scattering_angles()), np.cos(np.radians(table[:, 0]))
     dust = np.stack([np.interp(-mu, -cosine, each) for each in table[:, 1:].T], axis=1)
     dust /= 2.0 * np.pi * np.trapezoid(dust, -mu, axis=0)

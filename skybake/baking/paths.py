@@ -10,10 +10,10 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from skybake.image.settings import Encoding, Lighting, MapSettings
+from skybake.image.settings import Clouds, Encoding, Lighting, MapSettings
 from skybake.preset import Planet
 
-PLAIN_LIGHTING, PLAIN_ENCODING = Lighting(), Encoding()
+PLAIN_LIGHTING, PLAIN_ENCODING, PLAIN_CLOUDS = Lighting(), Encoding(), Clouds()
 
 LONGEST_VALUE = 12
 LONGEST_CHANGES = 40
@@ -48,6 +48,7 @@ def default_path(planet: Planet, settings: MapSettings) -> Path:
         encoding.colorspace if encoding.colorspace != PLAIN_ENCODING.colorspace else "",
         _scale(encoding),
         "clamped" if encoding.clamp_negative else "",
+        *(_clouds(settings.clouds) if planet.clouds else ()),
         view.projection.label,
     )
     return Path(f"{'_'.join(filter(None, parts))}.exr")
@@ -70,6 +71,11 @@ def _changes_name(changes: Mapping[str, Any]) -> str:
     if is_short and all(_SAFE.fullmatch(value) for value in values.values()):
         return name
     return sha256(json.dumps(changes, sort_keys=True, default=str).encode()).hexdigest()[:6]
+
+
+def _clouds(clouds: Clouds) -> tuple[str, str]:
+    quality = "" if clouds.quality == PLAIN_CLOUDS.quality else clouds.quality
+    return (f"t{clouds.time:g}s" if clouds.time > 0.0 else "", quality)
 
 
 def _bearing(azimuth: float) -> str:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from skybake.cloud_fields.clearance import surface_clearance, voxel_clearance
+from skybake.cloud_fields.surface import surface_extinction
+from skybake.cloud_fields.voxels import linear_extinction, voxel_extinction
 from skybake.jit.kernel import kernel
 
 CONSTANT, LINEAR, SURFACE = 0, 1, 2
@@ -18,44 +20,71 @@ voxels' centres, and a signed distance from the surface of clouds, linear betwee
 class CloudField(NamedTuple):
     """A layer of clouds that repeats to all sides.
 
+    Fields of every kind have the same types, so that one compiled kernel serves them all.
+
     Attributes
     ----------
     kind : int
         `CONSTANT`, `LINEAR` or `SURFACE`.
     values : ndarray of float32, shape (z, y, x)
-        Extinction of voxels [km⁻¹]; or distance from the surface, negative inside [km], with
-        nodes at the lower faces of what would be voxels and one plane more than these in z. x
-        runs east, y north, z up; x and y are periodic.
+        Extinction of voxels, a single 0 for a surface. x runs east, y north, z up; x and y are
+        periodic. [km⁻¹]
+    distance : ndarray of int16, shape (z, y, x)
+        From the surface, negative inside, at nodes, which lie at the lower faces of what would
+        be voxels, with one plane more than these in z; a single 0 for voxels. [`STEP`]
     spacing : ndarray of float64, shape (3,)
         Of nodes or voxels along z, y and x. [km]
+    period : ndarray of float64, shape (2,)
+        After which the field repeats along x and y. [km]
     origin : ndarray of float64, shape (2,)
         The tile's coordinates x and y under the observer's feet. [km]
     base, top : float
         Altitudes between which there may be clouds. [km]
-    floor : float
-        Altitude of the lowest node, or of the lower face of the lowest voxels. [km]
     extinction : ndarray of float64, shape (z,)
-        Inside a surface, at the nodes' heights; empty for voxels. [km⁻¹]
-    edge : float
-        Distance over which extinction falls from all to nothing at a surface. [km]
-    displacement : ndarray of float64, shape (noise, 5)
-        By which the surface is displaced: of each noise the amplitude, the period, and the shift
-        of its x, y and z. [km]
-    noise : ndarray of float32, shape (n, n, n)
-        Periodic, of zero mean, between -1 and 1.
+        Inside a surface, at the nodes' heights; a single 0 for voxels. [km⁻¹]
+    edge, widest_edge : float
+        Distance over which extinction falls from all to nothing at a surface, where all details
+        are resolved and where few are. [km]
+    condensation : float
+        Altitude below which there is nothing inside a surface. [km]
+    shift : ndarray of float64, shape (n,)
+        By which a surface is moved outward so that blur keeps its mean extinction; of a blur
+        that grows with the square of the index up to `largest_blur`. [km]
+    largest_blur : float
+        Beyond which nothing changes. [km]
+    displacement : ndarray of float64, shape (noise, 9)
+        By which the surface is displaced: of each noise the amplitude [km]; how many of its
+        periods lie along x and y, first for its own x, then for its y, and along z for its z
+        [km⁻¹]; and the shift of its x, y and z [periods]. Whole periods fit into the tile.
+    noise : ndarray of int8, shape (n, n, n)
+        Periodic, of zero mean, from -127 to 127 for -1 to 1.
+    clearance : ndarray of float32, shape (z, y, x)
+        Distance within which there is no cloud around any point of a block. [km]
+    block : ndarray of float64, shape (3,)
+        Size of a block along z, y and x. [km]
+    steepness : float
+        By how much faster than the true distance from the surface `distance` may change.
     """
 
     kind: int
     values: npt.NDArray[np.float32]
+    distance: npt.NDArray[np.int16]
     spacing: npt.NDArray[np.float64]
+    period: npt.NDArray[np.float64]
     origin: npt.NDArray[np.float64]
     base: float
     top: float
-    floor: float
     extinction: npt.NDArray[np.float64]
     edge: float
+    widest_edge: float
+    condensation: float
+    shift: npt.NDArray[np.float64]
+    largest_blur: float
     displacement: npt.NDArray[np.float64]
-    noise: npt.NDArray[np.float32]
+    noise: npt.NDArray[np.int8]
+    clearance: npt.NDArray[np.float32]
+    block: npt.NDArray[np.float64]
+    steepness: float
 
 
 @kernel
@@ -73,49 +102,19 @@ def extinction_at(field, x, y, altitude, blur):
     blur : float
         Size below which nothing needs to be resolved. [km]
     """
+    if field.kind == SURFACE:
+        return surface_extinction(field, x, y, altitude, blur)
     if field.kind == CONSTANT:
-        return _voxel(field, x, y, altitude)
-    return _between_voxels(field, x, y, altitude)
+        return voxel_extinction(field, x, y, altitude)
+    return linear_extinction(field, x, y, altitude)
 
 
 @kernel
 def clearance_at(field, x, y, altitude, blur):
-    """Distance around a point within which there is no cloud, 0 or less if there may be one. [km]"""
-    return 0.0
+    """Distance around a point within which there is no cloud, 0 or less if there may be one. [km]
 
-
-@kernel
-def _voxel(field, x, y, altitude):
-    levels, rows, columns = field.values.shape
-    k = int(math.floor((altitude - field.floor) / field.spacing[0]))
-    if k < 0 or k >= levels:
-        return 0.0
-    j = int(math.floor(y / field.spacing[1])) % rows
-    i = int(math.floor(x / field.spacing[2])) % columns
-    return float(field.values[k, j, i])
-
-
-@kernel
-def _between_voxels(field, x, y, altitude):
-    """Trilinear between centres; extinction falls to 0 within a voxel beyond the first and last plane."""
-    levels, rows, columns = field.values.shape
-    fz = (altitude - field.floor) / field.spacing[0] - 0.5
-    if fz <= -1.0 or fz >= levels:
-        return 0.0
-    fy, fx = y / field.spacing[1] - 0.5, x / field.spacing[2] - 0.5
-    k, j, i = int(math.floor(fz)), int(math.floor(fy)), int(math.floor(fx))
-    u, v, w = fx - i, fy - j, fz - k
-    i, j = i % columns, j % rows
-    east, north = (i + 1) % columns, (j + 1) % rows
-    low = high = 0.0
-    if k >= 0:
-        plane = field.values[k]
-        a = plane[j, i] + u * (plane[j, east] - plane[j, i])
-        b = plane[north, i] + u * (plane[north, east] - plane[north, i])
-        low = a + v * (b - a)
-    if k + 1 < levels:
-        plane = field.values[k + 1]
-        a = plane[j, i] + u * (plane[j, east] - plane[j, i])
-        b = plane[north, i] + u * (plane[north, east] - plane[north, i])
-        high = a + v * (b - a)
-    return low + w * (high - low)
+    Distances are those of the tile, flat; parameters are those of `extinction_at`.
+    """
+    if field.kind == SURFACE:
+        return surface_clearance(field, x, y, altitude, blur)
+    return voxel_clearance(field, x, y, altitude)

@@ -12,8 +12,14 @@ import click
 from skybake import input_files
 from skybake.commands.memory import check_memory
 from skybake.commands.options import values
+from skybake.commands.options.clouds import (
+    check_clouds,
+    clouds_from_options,
+    clouds_options,
+)
 from skybake.commands.options.observer import (
     altitude_option,
+    sun_azimuth_option,
     sun_distance_needs,
     sun_distance_option,
     sun_option,
@@ -41,9 +47,11 @@ def _wavelengths(text: str) -> tuple[float, ...]:
 @click.command()
 @world_options
 @sun_option()
+@sun_azimuth_option()
 @moment_options
 @sun_distance_option()
 @altitude_option()
+@clouds_options(quality="high")
 @click.option(
     "--directions",
     metavar="FILE.csv|-",
@@ -90,8 +98,8 @@ def probe(**options: Any) -> None:
     """Print radiances in given directions as CSV.
 
     Without --directions it looks along the circle at the sun's elevation and along the sun's
-    vertical plane. Azimuths are relative to the sun's; radiances are in W m-2 sr-1 nm-1 and leave
-    the sun's own disc out.
+    vertical plane. Azimuths count clockwise from the sun's; radiances are in W m-2 sr-1 nm-1 and
+    leave the sun's own disc out.
 
     \b
     Examples:
@@ -119,6 +127,7 @@ def probe(**options: Any) -> None:
     from skybake.sky.sky import WAVELENGTHS
 
     planet = world_from_options(context)
+    check_clouds(context, planet)
     sun_elevation = options["sun_elevation"] if moment is None else moment.sun_elevation
     source: Path | None = options["directions"]
     if source is None:
@@ -141,6 +150,7 @@ def probe(**options: Any) -> None:
         planet,
         directions,
         sun_elevation=sun_elevation,
+        sun_azimuth=options["sun_azimuth"] if moment is None else moment.sun_azimuth,
         sun_distance=sun_distance(planet, moment, options["sun_distance"]),
         altitude=options["altitude"],
         wavelengths=None if wavelengths is None else np.array(wavelengths),
@@ -148,6 +158,7 @@ def probe(**options: Any) -> None:
         illuminance=options["illuminance"],
         method=options["method"],
         samples=options["samples"],
+        clouds=clouds_from_options(context),
     )
     output: Path | None = options["output"]
     if output is None:

@@ -11,6 +11,7 @@ import click
 
 from skybake.commands.memory import check_memory
 from skybake.commands.options import values
+from skybake.commands.options.clouds import check_clouds, clouds_options
 from skybake.commands.options.maps import map_needs, map_options, map_settings
 from skybake.commands.options.observer import (
     altitude_option,
@@ -40,6 +41,7 @@ from skybake.commands.printing.progress import map_progress
 @moment_options
 @sun_distance_option()
 @altitude_option()
+@clouds_options()
 @map_options
 @click.option(
     *("-o", "--output"),
@@ -84,6 +86,8 @@ def render(**options: Any) -> None:
         sun_elevation=options["sun_elevation"] if moment is None else moment.sun_elevation,
         sun_azimuth=options["sun_azimuth"] if moment is None else moment.sun_azimuth,
         altitude=options["altitude"],
+        cloud_time=options["cloud_time"] or 0.0,
+        clouds_quality=options["clouds_quality"],
     )
 
     from skybake.baking import bake, default_path, late_kernels
@@ -91,6 +95,7 @@ def render(**options: Any) -> None:
     from skybake.image.sun_distance import sun_distance
 
     planet = world_from_options(context)
+    check_clouds(context, planet)
     distance = sun_distance(planet, moment, options["sun_distance"])
     settings = replace(settings, lighting=replace(settings.lighting, sun_distance=distance))
     output = options["output"] or default_path(planet, settings)

@@ -12,6 +12,7 @@ import click
 
 from skybake.commands.memory import check_memory
 from skybake.commands.options import values
+from skybake.commands.options.clouds import check_clouds, clouds_options
 from skybake.commands.options.emit import (
     RememberingCommand,
     emit,
@@ -57,6 +58,7 @@ SOME_FAILED = 3
 @span_options
 @sun_distance_option()
 @altitude_option(is_range=True)
+@clouds_options(is_range=True)
 @click.option(
     "--frames",
     metavar="FRAMES",
@@ -210,14 +212,14 @@ def _plan_from_options(context: click.Context) -> Plan:
     """
     options = context.params
     times = span_from_options(context)
-    settings = map_settings(options)
+    settings = map_settings(options, clouds_quality=options["clouds_quality"])
     changes = changes_from_options(context)
 
     from skybake.sequence.planning import plan_sequence
 
     ranges = tuple((key, values.number_range(value)) for key, value in changes.values)
     with usage_faults(context, times="--from and --to"):
-        return plan_sequence(
+        plan = plan_sequence(
             options["preset"],
             frames=options["frames"],
             times=times,
@@ -228,9 +230,12 @@ def _plan_from_options(context: click.Context) -> Plan:
             changes=replace(changes, values=ranges),
             settings=settings,
             exposure_curve=options["exposure_curve"],
+            cloud_time=options["cloud_time"],
             output=options["output"],
             preview=options["preview"] == BESIDE or options["preview"] or False,
         )
+    check_clouds(context, *plan.planets)
+    return plan
 
 
 def _bake(plan: Plan, part: Plan, products: Products, options: Mapping[str, Any]) -> SequenceResult:

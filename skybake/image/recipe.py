@@ -23,7 +23,7 @@ LONGEST_LIST = 16
 
 def map_recipe(planet: Planet, settings: MapSettings) -> dict[str, Any]:
     """Return the recipe of a map, fit for JSON."""
-    return {"map": settings.recipe(), "preset": planet.recipe}
+    return {"map": settings.recipe(has_clouds=bool(planet.clouds)), "preset": planet.recipe}
 
 
 def recipe_text(planet: Planet, settings: MapSettings) -> str:

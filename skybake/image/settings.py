@@ -19,7 +19,10 @@ LARGEST_SUN = math.radians(20.0)
 """Largest diameter of a sun's disc that is drawn in another size than its own. [rad]"""
 
 STRONGEST_SUN = 1e6
+CLOUD_QUALITIES = ("draft", "normal", "high")
 PIXELS = ("auto", "half", "float")
+
+_CLOUDS = {"cloud_time": "time", "clouds_quality": "quality"}
 
 
 @dataclass(frozen=True)
@@ -97,6 +100,32 @@ class Lighting:
 
 
 @dataclass(frozen=True)
+class Clouds:
+    """When clouds are seen, and how finely their light is solved for.
+
+    Attributes
+    ----------
+    time : float
+        For which they have drifted and changed, at least 0. [s]
+    quality : {"draft", "normal", "high"}
+        Of the light's grid and of the march through clouds.
+    """
+
+    time: float = 0.0
+    quality: str = "normal"
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be baked."""
+        _check_known("clouds quality", self.quality, CLOUD_QUALITIES)
+        if not 0.0 <= self.time < math.inf:
+            raise InputError(f"cloud time: must be at least 0s and finite, got {self.time}s")
+
+    def recipe(self) -> dict[str, Any]:
+        """All that decides the pixels, in human-readable units, fit for JSON."""
+        return {"cloud_time_s": self.time, "clouds_quality": self.quality}
+
+
+@dataclass(frozen=True)
 class Encoding:
     """What the numbers of a map mean and how they are stored.
 
@@ -156,14 +185,23 @@ class MapSettings:
         What lights it.
     encoding : Encoding
         How it is stored.
+    clouds : Clouds
+        When clouds are seen, if the world has any.
     """
 
     view: View = field(default_factory=View)
     lighting: Lighting = field(default_factory=Lighting)
     encoding: Encoding = field(default_factory=Encoding)
+    clouds: Clouds = field(default_factory=Clouds)
 
-    def recipe(self) -> dict[str, Any]:
-        """All that decides the pixels, in human-readable units, fit for JSON."""
+    def recipe(self, *, has_clouds: bool = False) -> dict[str, Any]:
+        """All that decides the pixels, in human-readable units, fit for JSON.
+
+        Parameters
+        ----------
+        has_clouds : bool, optional
+            Whether the world has any, whose settings count then.
+        """
         lighting, encoding = self.lighting, self.encoding
         return {
             "sun_elevation_deg": degrees(lighting.sun_elevation),
@@ -183,6 +221,7 @@ class MapSettings:
             "clamp_negative": encoding.clamp_negative,
             "omit_exposure": encoding.omit_exposure,
             "method": lighting.method,
+            **(self.clouds.recipe() if has_clouds else {}),
         }
 
 
@@ -200,8 +239,9 @@ def map_settings(
     size : tuple of int, or int, optional
         Of a projection that is given by name: width and height, or edge. [pixel]
     **values
-        Attributes of `View`, `Lighting` and `Encoding`, such as ``sun_elevation=0.1``, and of
-        the named projection, such as ``layout="cross"``.
+        Attributes of `View`, `Lighting` and `Encoding`, such as ``sun_elevation=0.1``, of the
+        named projection, such as ``layout="cross"``, and ``cloud_time`` [s] and
+        ``clouds_quality``, see `Clouds`.
 
     Raises
     ------
@@ -212,6 +252,7 @@ def map_settings(
     for name, kind in (("view", View), ("lighting", Lighting), ("encoding", Encoding)):
         names = {one.name for one in fields(kind)}
         parts[name] = {key: values.pop(key) for key in names & values.keys()}
+    clouds = {own: values.pop(name) for name, own in _CLOUDS.items() if name in values}
     if isinstance(projection, str):
         size = (size,) if isinstance(size, int) else size
         projection = find_projection(projection, size, values)
@@ -219,7 +260,9 @@ def map_settings(
         given = sorted({*values, *(() if size is None else ("size",))})
         raise InputError(f"settings: {', '.join(given)} must be given by the projection itself")
     view = View(projection=projection, **parts["view"])
-    return MapSettings(view, Lighting(**parts["lighting"]), Encoding(**parts["encoding"]))
+    return MapSettings(
+        view, Lighting(**parts["lighting"]), Encoding(**parts["encoding"]), Clouds(**clouds)
+    )
 
 
 def _check_known(name: str, value: str, known: tuple[str, ...]) -> None:

@@ -14,10 +14,10 @@ from skybake.angles import cosine_between
 from skybake.errors import InputError, UnsolvableError
 from skybake.image.light import light_of_scene
 from skybake.image.scene import DARK, ROUNDING, Scene, luminous_weights
-from skybake.image.settings import Lighting, MapSettings, View
+from skybake.image.settings import Clouds, Lighting, MapSettings, View
+from skybake.inspect.traced import traced_radiance
 from skybake.optics.medium import Array
 from skybake.preset import Planet
-from skybake.reference.estimate import radiance
 from skybake.sky.sky import WAVELENGTHS, Sky
 
 COLUMNS = ("view_zenith_deg", "relative_azimuth_deg")
@@ -31,7 +31,7 @@ class Directions:
     Attributes
     ----------
     text : tuple of (str, str)
-        Zenith angle and azimuth relative to the sun's as given, in degrees.
+        Zenith angle, and bearing less that of the sun, clockwise, as given, in degrees.
     zenith, azimuth : ndarray of float64, shape (direction,)
         The same. [rad]
     """
@@ -92,6 +92,7 @@ def probe(
     directions: Directions,
     *,
     sun_elevation: float,
+    sun_azimuth: float = math.pi,
     altitude: float = 0.0,
     sun_distance: float | None = None,
     wavelengths: Array | None = None,
@@ -99,6 +100,7 @@ def probe(
     illuminance: bool = False,
     method: str = "full",
     samples: int = 10_000,
+    clouds: Clouds | None = None,
 ) -> str:
     """Radiances of a planet's sky as CSV.
 
@@ -110,6 +112,8 @@ def probe(
         Where to look.
     sun_elevation : float
         At the observer. [rad]
+    sun_azimuth : float, optional
+        Bearing of the sun, from which the directions' azimuths count clockwise. [rad]
     altitude : float, optional
         Of the observer. [km]
     sun_distance : float, optional
@@ -125,6 +129,8 @@ def probe(
         `reference` traces paths and adds the standard errors.
     samples : int, optional
         Paths for each direction and wavelength of the reference.
+    clouds : Clouds, optional
+        When clouds are seen, if the world has any.
 
     Returns
     -------
@@ -144,21 +150,23 @@ def probe(
         planet,
         sun_elevation,
         altitude,
+        sun_azimuth=sun_azimuth,
         sun_distance=sun_distance,
         wavelengths=wavelengths,
         method=fast,
     )
     columns: dict[str, Array] = {}
-    values, errors = _radiance(sky, directions, method, samples)
+    seen = clouds or Clouds()
+    values, errors = _radiance(planet, sky, directions, method, samples, seen)
     scale = np.ones(sky.wavelengths.size) if per_irradiance else sky.irradiance
     for k, wavelength in enumerate(sky.wavelengths):
         columns[f"radiance_{wavelength:g}nm"] = values[:, k] * scale[k]
         if errors is not None:
             columns[f"stderr_{wavelength:g}nm"] = errors[:, k] * scale[k]
     if not per_irradiance:
-        columns |= _colour(planet, sky, directions, method, samples, values)
+        columns |= _colour(planet, sky, directions, method, samples, seen, values)
     if illuminance:
-        columns |= _illuminance(planet, sky, directions)
+        columns |= _illuminance(planet, sky, directions, seen)
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow([*COLUMNS, *columns])
@@ -168,18 +176,12 @@ def probe(
 
 
 def _radiance(
-    sky: Sky, directions: Directions, method: str, samples: int
+    planet: Planet, sky: Sky, directions: Directions, method: str, samples: int, clouds: Clouds
 ) -> tuple[Array, Array | None]:
     """Radiance per unit irradiance and, by the reference, its standard error. [sr⁻¹]"""
     if method == REFERENCE:
-        return radiance(
-            sky.medium,
-            sky.altitude,
-            sky.sun_elevation,
-            directions.zenith,
-            directions.azimuth,
-            samples=samples,
-        )
+        zenith, azimuth = directions.zenith, directions.azimuth
+        return traced_radiance(planet, sky, zenith, azimuth, samples, clouds.time)
     sun_zenith = sky.source.zenith
     mu, sine = np.cos(directions.zenith), np.sin(directions.zenith)
     nu = cosine_between(mu, sine, math.cos(sun_zenith), math.sin(sun_zenith), directions.azimuth)
@@ -200,7 +202,13 @@ def _without_rounding(radiance: Array) -> Array:
 
 
 def _colour(
-    planet: Planet, sky: Sky, directions: Directions, method: str, samples: int, values: Array
+    planet: Planet,
+    sky: Sky,
+    directions: Directions,
+    method: str,
+    samples: int,
+    clouds: Clouds,
+    values: Array,
 ) -> dict[str, Array]:
     """Luminance and chromaticity, from the renderer's own wavelengths."""
     own = np.array(planet.wavelengths or WAVELENGTHS)
@@ -209,10 +217,11 @@ def _colour(
             planet,
             sky.sun_elevation,
             sky.altitude,
+            sun_azimuth=sky.sun_azimuth,
             sun_distance=sky.sun_distance,
             method=sky.method,
         )
-        values, _ = _radiance(sky, directions, method, samples)
+        values, _ = _radiance(planet, sky, directions, method, samples, clouds)
     xyz = values @ luminous_weights(sky)
     total = xyz.sum(axis=1)
     total[total == 0.0] = math.nan
@@ -223,9 +232,16 @@ def _colour(
     }
 
 
-def _illuminance(planet: Planet, sky: Sky, directions: Directions) -> dict[str, Array]:
-    lighting = Lighting(sky.sun_elevation, sun_distance=sky.sun_distance, method=sky.method)
-    settings = MapSettings(View(sky.altitude), lighting)
+def _illuminance(
+    planet: Planet, sky: Sky, directions: Directions, clouds: Clouds
+) -> dict[str, Array]:
+    lighting = Lighting(
+        sky.sun_elevation,
+        sun_azimuth=sky.sun_azimuth,
+        sun_distance=sky.sun_distance,
+        method=sky.method,
+    )
+    settings = MapSettings(View(sky.altitude), lighting, clouds=clouds)
     light = light_of_scene(Scene(planet, settings))
     figures = {
         "direct_normal_illuminance_lux": light.direct_normal_illuminance,

@@ -10,7 +10,7 @@ from typing import Any
 
 from skybake.errors import ArgumentError, PresetError, PresetWarning
 from skybake.optics.haze import haze_for_turbidity, haze_for_visibility
-from skybake.preset import Absorber, Override, Planet, load_preset
+from skybake.preset import Absorber, Override, Planet, load_document, load_preset
 
 OZONE = "ozone"
 
@@ -21,9 +21,13 @@ class PresetChanges:
 
     Attributes
     ----------
+    clouds : tuple of mapping
+        Layers of clouds to add, each as the table of one in a preset and named after its
+        kind; first of all, so that values may change them.
+    keep_clouds : bool
+        Whether the preset keeps its own.
     values : tuple of (str, value)
-        Keys of the preset, dotted, and what they are set to, as parsed from TOML; first
-        of all, in this order.
+        Keys of the preset, dotted, and what they are set to, as parsed from TOML, in this order.
     ground_albedo : float, str or None
         Of the ground: a number, a name of a spectrum, or a file.
     ozone : float or None
@@ -48,6 +52,8 @@ class PresetChanges:
     visibility: float | None = None
     turbidity: float | None = None
     sources: Mapping[str, str] = field(default_factory=dict)
+    clouds: tuple[Mapping[str, Any], ...] = ()
+    keep_clouds: bool = True
 
     def __post_init__(self) -> None:
         """Refuse visibility and turbidity together."""
@@ -72,7 +78,8 @@ class PresetChanges:
         PresetError
             As `load`.
         """
-        found = [Override(key, value, self._source("values")) for key, value in self.values]
+        found = self._cloud_layers(preset)
+        found += [Override(key, value, self._source("values")) for key, value in self.values]
         if self.ground_albedo is not None:
             source = self._source("ground_albedo")
             found.append(Override("ground.albedo", self.ground_albedo, source))
@@ -84,6 +91,23 @@ class PresetChanges:
         if self.turbidity is not None:
             planet = _load_quietly(preset, found)
             found += self._haze("turbidity", planet, haze_for_turbidity, self.turbidity)
+        return found
+
+    def _cloud_layers(self, preset: str | Path) -> list[Override]:
+        if self.keep_clouds and not self.clouds:
+            return []
+        source = self._source("clouds")
+        own = load_document(preset).data.get("clouds")
+        found = []
+        if own is not None and not self.keep_clouds:
+            found.append(Override("clouds", "none", source))
+        taken = set(own) if isinstance(own, dict) and self.keep_clouds else set()
+        for table in self.clouds:
+            kind = str(table.get("kind", "tile"))
+            names = (kind, *(f"{kind}-{n}" for n in range(2, len(taken) + 3)))
+            name = next(name for name in names if name not in taken)
+            taken.add(name)
+            found.append(Override(f"clouds.{name}", dict(table), source))
         return found
 
     def _ozone(self, planet: Planet, column: float) -> Override:

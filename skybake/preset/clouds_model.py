@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from skybake.preset.model import Phase
+from skybake.preset.optics_model import Phase
 
-KINDS = ("stratus", "stratocumulus", "cumulus", "altocumulus", "cirrus", "tile")
+TILE = "tile"
+KINDS = ("stratus", "stratocumulus", "cumulus", "altocumulus", "cirrus", TILE)
 
 
 @dataclass(frozen=True, slots=True)

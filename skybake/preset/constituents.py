@@ -15,13 +15,11 @@ from skybake.preset.model import (
     Constituent,
     ExponentialProfile,
     Gas,
-    HenyeyGreensteinPhase,
-    Phase,
     Profile,
-    Spectrum,
     TabulatedProfile,
     TentProfile,
 )
+from skybake.preset.optics_model import HenyeyGreensteinPhase, Phase, Spectrum
 from skybake.preset.phases import read_phase
 from skybake.preset.section import Gather, Section
 

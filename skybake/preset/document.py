@@ -22,6 +22,10 @@ _WHOLE = {"composition"}
 _RIVALS = {
     "relative_extinction": "angstrom_exponent",
     "angstrom_exponent": "relative_extinction",
+    "liquid_water_path_g_m2": "optical_depth",
+    "optical_depth": "liquid_water_path_g_m2",
+    "tile": "kind",
+    "kind": "tile",
 }
 
 
@@ -61,9 +65,10 @@ class Document:
 
     Notes
     -----
-    A later source wins. Tables are merged key by key, but a table of another ``kind``
-    and a gas's composition replace the former one completely. The value "none" removes a
-    key, and of two keys that exclude each other the later one removes the former.
+    A later source wins. Tables are merged key by key, but a table of another ``kind``,
+    one with a ``tile`` instead of a kind, and a gas's composition replace the former one
+    completely. The value "none" removes a key, and of two keys that exclude each other the
+    later one removes the former.
     """
 
     def __init__(self) -> None:
@@ -173,7 +178,8 @@ class Document:
 
 
 def _merges(name: str, old: dict[str, Any], new: dict[str, Any]) -> bool:
-    return name not in _WHOLE and ("kind" not in new or new["kind"] == old.get("kind"))
+    is_same = "kind" not in new or new["kind"] == old.get("kind")
+    return name not in _WHOLE and is_same and ("tile" not in new or "tile" in old)
 
 
 def _leaves(table: dict[str, Any], at: Key) -> list[tuple[Key, Any]]:

@@ -13,6 +13,7 @@ from skybake.errors import PresetError
 from skybake.preset.document import Document, Key, Source, dotted
 from skybake.preset.find import display_name, find_preset, is_path, preset_names, read_preset
 from skybake.preset.message import nearest, shown
+from skybake.preset.toml import NAMED
 
 TOP_KEYS = (
     "title",
@@ -23,11 +24,12 @@ TOP_KEYS = (
     "star",
     "ground",
     "constituents",
+    "clouds",
 )
 """Top-level keys of a preset, apart from `extends`."""
 
 NAME = re.compile(r"[A-Za-z0-9_-]+")
-"""Names of constituents, which fit into dotted keys."""
+"""Names of constituents and of layers of clouds, which fit into dotted keys."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,11 +145,11 @@ def _parse(path: Path, where: str) -> dict[str, Any]:
 def _full_key(document: Document, override: Override) -> Key:
     """Key of an override from the top."""
     key = tuple(override.key.split("."))
-    constituents = document.data.get("constituents")
-    names = constituents if isinstance(constituents, dict) else {}
+    names = _names(document, "constituents")
     if key[0] in names and key[0] not in TOP_KEYS:
         key = ("constituents", *key)
-    if all(map(NAME.fullmatch, key)) and _leads_somewhere(key, names):
+    known = _names(document, key[0]) if key[0] in NAMED else names
+    if all(map(NAME.fullmatch, key)) and _leads_somewhere(key, known):
         return key
     keys = [dotted(key).removeprefix("constituents.") for key, _ in document.leaves()]
     like = nearest(override.key.removeprefix("constituents."), [*names, *TOP_KEYS, *keys])
@@ -158,8 +160,13 @@ def _full_key(document: Document, override: Override) -> Key:
     )
 
 
+def _names(document: Document, table: str) -> dict[str, Any]:
+    found = document.data.get(table)
+    return found if isinstance(found, dict) else {}
+
+
 def _leads_somewhere(key: Key, names: Iterable[str]) -> bool:
     """Whether a key's table is there; its reader checks what is in it."""
-    if key[0] != "constituents" or len(key) <= 2:
+    if key[0] not in NAMED or len(key) <= 2:
         return key[0] in TOP_KEYS
-    return key[1] in names or key[2:] == ("kind",)
+    return key[1] in names or key[2:] in (("kind",), ("tile",))

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from skybake.constants import ASTRONOMICAL_UNIT
+from skybake.preset.clouds import read_clouds
 from skybake.preset.constituents import Top, read_constituent
 from skybake.preset.document import Document
 from skybake.preset.extend import NAME, Overrides, load_document
@@ -92,6 +93,7 @@ def planet_from_document(document: Document, *, name: str) -> Planet:
     star = read(_read_star, top)
     ground = read(_read_ground, top)
     constituents = read(_read_constituents, top, highest)
+    clouds = read(read_clouds, top, highest)
     read.finish()
     return Planet(
         name=name,
@@ -105,6 +107,7 @@ def planet_from_document(document: Document, *, name: str) -> Planet:
         constituents=constituents,
         recipe={},
         data_quality=data_quality,
+        clouds=clouds,
     )
 
 

@@ -7,25 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from skybake.constants import ASTRONOMICAL_UNIT
-
-
-@dataclass(frozen=True, slots=True)
-class Spectrum:
-    """A quantity against wavelength, linear between its nodes.
-
-    Attributes
-    ----------
-    where : str
-        Where the preset gives it, for messages.
-    wavelength : tuple of float
-        Nodes, strictly ascending [nm]; empty if one value holds everywhere.
-    values : tuple of float
-        Values at the nodes, or the one value.
-    """
-
-    where: str
-    wavelength: tuple[float, ...]
-    values: tuple[float, ...]
+from skybake.preset.clouds_model import CloudLayer
+from skybake.preset.optics_model import Phase, Spectrum
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,67 +35,6 @@ class TabulatedProfile:
 
 
 Profile = ExponentialProfile | TentProfile | TabulatedProfile
-
-
-@dataclass(frozen=True, slots=True)
-class RayleighPhase:
-    """Scattering by anisotropic molecules with this depolarisation ratio of natural light."""
-
-    depolarisation: Spectrum
-
-
-@dataclass(frozen=True, slots=True)
-class HenyeyGreensteinPhase:
-    """Henyey & Greenstein (1941) with this mean cosine."""
-
-    asymmetry: Spectrum
-
-
-@dataclass(frozen=True, slots=True)
-class CornetteShanksPhase:
-    """Cornette & Shanks (1992); its parameter is slightly less than the mean cosine."""
-
-    asymmetry: Spectrum
-
-
-@dataclass(frozen=True, slots=True)
-class DoubleHenyeyGreensteinPhase:
-    """Two Henyey-Greenstein lobes, the first with weight `first_fraction`."""
-
-    first_asymmetry: Spectrum
-    second_asymmetry: Spectrum
-    first_fraction: Spectrum
-
-
-@dataclass(frozen=True, slots=True)
-class TabulatedPhase:
-    """A table over scattering angle, interpolated in the logarithm, and over wavelength.
-
-    Attributes
-    ----------
-    where : str
-        Where the preset names it, for messages.
-    angle : tuple of float
-        Scattering angles, ascending from 0 to pi. [rad]
-    wavelength : tuple of float
-        Strictly ascending [nm]; empty if the one column holds everywhere.
-    values : tuple of tuple of float
-        One tuple a wavelength, one value an angle, all positive. [sr⁻¹]
-    """
-
-    where: str
-    angle: tuple[float, ...]
-    wavelength: tuple[float, ...]
-    values: tuple[tuple[float, ...], ...]
-
-
-Phase = (
-    RayleighPhase
-    | HenyeyGreensteinPhase
-    | CornetteShanksPhase
-    | DoubleHenyeyGreensteinPhase
-    | TabulatedPhase
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -252,6 +174,8 @@ class Planet:
         is under ``"files"``. What was set is repeated under ``"set"``.
     data_quality : str or None
         Human-readable: where the data are weak; None if they are not.
+    clouds : tuple of CloudLayer
+        In the preset's order; may overlap.
     """
 
     name: str
@@ -265,3 +189,4 @@ class Planet:
     constituents: tuple[Constituent, ...]
     recipe: dict[str, Any] = field(compare=False)
     data_quality: str | None = None
+    clouds: tuple[CloudLayer, ...] = ()

@@ -7,13 +7,12 @@ import warnings
 from itertools import pairwise
 
 from skybake.errors import PresetWarning
-from skybake.preset.model import (
+from skybake.preset.optics_model import (
     CornetteShanksPhase,
     DoubleHenyeyGreensteinPhase,
     HenyeyGreensteinPhase,
     Phase,
     RayleighPhase,
-    Spectrum,
     TabulatedPhase,
 )
 from skybake.preset.section import Gather, Section
@@ -38,8 +37,15 @@ NOTED_DEVIATION = 1e-3
 """Less is due to the rounding of a table's digits, and needs no warning."""
 
 
-def read_phase(section: Section) -> Phase:
+def read_phase(section: Section, asymmetry: tuple[float, float] = ASYMMETRY) -> Phase:
     """Read ``phase``.
+
+    Parameters
+    ----------
+    section : Section
+        Its table.
+    asymmetry : tuple of float, optional
+        Least and greatest mean cosine that the transport holds.
 
     Raises
     ------
@@ -53,23 +59,19 @@ def read_phase(section: Section) -> Phase:
         # 1/2 belongs to a molecule that can be polarised along one axis only.
         phase = RayleighPhase(read(section.spectrum, "depolarisation", 0.0, 0.5, default=0.0))
     elif kind == "henyey-greenstein":
-        phase = HenyeyGreensteinPhase(read(_read_asymmetry, section, "asymmetry"))
+        phase = HenyeyGreensteinPhase(read(section.spectrum, "asymmetry", *asymmetry))
     elif kind == "cornette-shanks":
-        phase = CornetteShanksPhase(read(_read_asymmetry, section, "asymmetry"))
+        phase = CornetteShanksPhase(read(section.spectrum, "asymmetry", *asymmetry))
     elif kind == "double-henyey-greenstein":
         phase = DoubleHenyeyGreensteinPhase(
-            read(_read_asymmetry, section, "first_asymmetry"),
-            read(_read_asymmetry, section, "second_asymmetry"),
+            read(section.spectrum, "first_asymmetry", *asymmetry),
+            read(section.spectrum, "second_asymmetry", *asymmetry),
             read(section.spectrum, "first_fraction", 0.0, 1.0),
         )
     else:
         phase = read(_read_table, section)
     read.finish()
     return phase
-
-
-def _read_asymmetry(section: Section, key: str) -> Spectrum:
-    return section.spectrum(key, *ASYMMETRY)
 
 
 def _read_table(section: Section) -> TabulatedPhase:

@@ -9,7 +9,8 @@ from typing import Any
 from skybake.preset.document import Document
 from skybake.preset.tables import file_digest, is_user_file
 
-_TEXTS = ("title", "data_quality")
+_TEXTS = ("title", "data_quality", "cover")
+"""Keys whose texts name no file, though they may hold a slash."""
 
 
 def recipe_of(document: Document, folder: Path) -> dict[str, Any]:

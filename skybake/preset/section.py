@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from itertools import pairwise
+from pathlib import Path
 from typing import Any, NoReturn, ParamSpec, TypeVar, cast
 
 from skybake.errors import PresetError
 from skybake.preset.document import Document, Key, dotted
 from skybake.preset.message import nearest, shown
-from skybake.preset.model import Spectrum
-from skybake.preset.tables import load_table
+from skybake.preset.optics_model import Spectrum
+from skybake.preset.tables import find_user_file, load_table
 
 MISSING: Any = object()
 """Default of a key that must be given."""
@@ -137,6 +138,12 @@ class Section:
         """Columns of the table that the key names: one of skybake, or a user's CSV file."""
         name = self.text(key)
         return load_table(name, self.where(key), self._document.source(self._path(key)), column)
+
+    def user_file(self, key: str) -> Path:
+        """Path of the user's file that the key names."""
+        name = self.text(key)
+        where = f"{self.where(key)}: {shown(name)}"
+        return find_user_file(name, where, self._document.source(self._path(key)))
 
     def columns(self, key: str, first: str, second: str) -> list[tuple[float, ...]]:
         """Two columns of the table that the key names."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-from hashlib import sha256
 from pathlib import Path
 
 from skybake import input_files
@@ -17,7 +16,7 @@ _DATA = Path(__file__).resolve().parents[1] / "data"
 
 def is_user_file(name: str) -> bool:
     """Whether a preset's string is the path of a user's file rather than a table of skybake."""
-    return name.endswith(".csv") or "/" in name or "\\" in name
+    return name.endswith((".csv", ".npz")) or "/" in name or "\\" in name
 
 
 def load_table(name: str, where: str, source: Source, column: str) -> dict[str, tuple[float, ...]]:
@@ -47,9 +46,7 @@ def load_table(name: str, where: str, source: Source, column: str) -> dict[str, 
     """
     if is_user_file(name):
         where = f"{where}: {shown(name)}"
-        if source.is_file and Path(os.path.normpath(name)).parts[0] == os.pardir:
-            raise PresetError(f"{where}: must be in the preset's folder or an absolute path")
-        return _parse(where, _read(source.folder / name, where))
+        return _parse(where, _read(find_user_file(name, where, source), where))
     if name not in {path.stem for path in _DATA.glob("*.csv")}:
         columns = table_columns()
         known = ", ".join(one for one in columns if column in columns[one])
@@ -60,8 +57,21 @@ def load_table(name: str, where: str, source: Source, column: str) -> dict[str, 
     return _parse(where, _read(_DATA / f"{name}.csv", where))
 
 
+def find_user_file(name: str, where: str, source: Source) -> Path:
+    """Path of a user's file that a preset names.
+
+    Raises
+    ------
+    PresetError
+        If it leads out of the preset's folder.
+    """
+    if source.is_file and Path(os.path.normpath(name)).parts[0] == os.pardir:
+        raise PresetError(f"{where}: must be in the preset's folder or an absolute path")
+    return source.folder / name
+
+
 def file_digest(path: Path) -> str:
-    """SHA-256 of a user's table, in hexadecimal digits.
+    """SHA-256 of a user's table or tile, in hexadecimal digits.
 
     Raises
     ------
@@ -69,10 +79,9 @@ def file_digest(path: Path) -> str:
         If it cannot be read.
     """
     try:
-        content = input_files.read_bytes(path, str(path), input_files.LARGEST_TABLE)
+        return input_files.digest(path, str(path), input_files.LARGEST_TILE)
     except InputError as error:
         raise PresetError(str(error)) from error
-    return sha256(content).hexdigest()
 
 
 def table_columns() -> dict[str, list[str]]:

@@ -8,8 +8,11 @@ from typing import Any
 
 from skybake.preset.document import Key
 
-HEADED = ("planet", "star", "ground", "constituents")
+HEADED = ("planet", "star", "ground", "constituents", "clouds")
 """Tables that get a heading; those within them are written inline."""
+
+NAMED = ("constituents", "clouds")
+"""Those whose tables have headings as well."""
 
 
 def toml_text(data: dict[str, Any], line: Callable[[Key, str], str] | None = None) -> str:
@@ -48,7 +51,7 @@ def _lines(table: dict[str, Any], key: Key, line: Callable[[Key, str], str]) -> 
 
 
 def _is_headed(key: Key, value: Any) -> bool:
-    return isinstance(value, dict) and key[0] in HEADED and len(key) <= 1 + (key[0] == HEADED[-1])
+    return isinstance(value, dict) and key[0] in HEADED and len(key) <= 1 + (key[0] in NAMED)
 
 
 def toml_value(value: Any) -> str:

@@ -13,6 +13,7 @@ from skybake.jit.workers import ALL_CPUS
 from skybake.optics.medium import Medium
 from skybake.optics.phase import eval_phase
 from skybake.reference.air import Air, air_at
+from skybake.reference.batches import BATCHES, batch_seed, mean_and_error, samples_per_batch
 from skybake.reference.directions import Direction
 from skybake.reference.guide import Guide, make_guide
 from skybake.reference.paths import mean_irradiance, mean_radiance
@@ -20,9 +21,6 @@ from skybake.reference.rays import transmittance_to_space
 from skybake.reference.single import trace_single
 
 Array = npt.NDArray[np.float64]
-
-BATCHES = 32
-"""Independent means from which a standard error is computed, to 13 %."""
 
 _ENDLESS = np.iinfo(np.int64).max
 
@@ -113,7 +111,7 @@ def radiance(
     last = _ENDLESS if math.isinf(last) else int(last)
     sun, views = _directions(altitude, sun_elevation, view_zenith, relative_azimuth)
     models = _models(medium)
-    per_batch = _samples_per_batch(samples)
+    per_batch = samples_per_batch(samples)
     shape = (len(views), len(models), BATCHES)
     means = np.empty(shape)
 
@@ -122,11 +120,19 @@ def radiance(
             index = np.unravel_index(row, shape)
             air, guide = models[index[1]]
             means[index] = mean_radiance(
-                air, guide, sun, altitude, views[index[0]], first, last, per_batch, _seed(seed, row)
+                air,
+                guide,
+                sun,
+                altitude,
+                views[index[0]],
+                first,
+                last,
+                per_batch,
+                batch_seed(seed, row),
             )
 
     ALL_CPUS.run_rows(means.size, trace_batches)
-    mean, stderr = _mean_and_error(means)
+    mean, stderr = mean_and_error(means)
     if orders is None:
         mean += single_scattering(medium, altitude, sun_elevation, view_zenith, relative_azimuth)
     return mean, stderr
@@ -166,7 +172,7 @@ def irradiance(
     """
     sun, _ = _directions(altitude, sun_elevation, 0.0, 0.0)
     models = _models(medium)
-    per_batch = _samples_per_batch(samples)
+    per_batch = samples_per_batch(samples)
     shape = (2, len(models), BATCHES)
     means = np.empty(shape)
 
@@ -176,11 +182,11 @@ def irradiance(
             air, guide = models[index[1]]
             facing = 1.0 - 2.0 * index[0]
             means[index] = mean_irradiance(
-                air, guide, sun, altitude, facing, per_batch, _seed(seed, row)
+                air, guide, sun, altitude, facing, per_batch, batch_seed(seed, row)
             )
 
     ALL_CPUS.run_rows(means.size, trace_batches)
-    mean, stderr = _mean_and_error(means)
+    mean, stderr = mean_and_error(means)
     transmittance = np.array([transmittance_to_space(air, altitude, sun[2]) for air, _ in models])
     direct = transmittance * max(0.0, sun[2])
     return Irradiance(transmittance, direct, mean[0], stderr[0], mean[1], stderr[1])
@@ -223,19 +229,3 @@ def _directions(
     sun = (math.cos(sun_elevation), 0.0, math.sin(sun_elevation))
     x, y, z = np.sin(zenith) * np.cos(azimuth), np.sin(zenith) * np.sin(azimuth), np.cos(zenith)
     return sun, [(float(a), float(b), float(c)) for a, b, c in zip(x, y, z, strict=True)]
-
-
-def _samples_per_batch(samples: int) -> int:
-    if samples < 1:
-        message = f"samples: must be >= 1, got {samples}"
-        raise InputError(message)
-    return -(-samples // BATCHES)
-
-
-def _seed(seed: int, row: int) -> np.uint64:
-    """Start of an independent stream of random numbers for each row."""
-    return np.uint64(np.random.SeedSequence([seed, row]).generate_state(1, np.uint64)[0])
-
-
-def _mean_and_error(means: Array) -> tuple[Array, Array]:
-    return means.mean(axis=-1), means.std(axis=-1, ddof=1) / math.sqrt(BATCHES)

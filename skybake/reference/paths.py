@@ -139,17 +139,28 @@ def turn(air, guide, each, total, h, up, direction, sun, at_ground, order, state
         turned = draw_cosine(up, 1.0, state)
     else:
         turned = draw_lobe(air, each, total, direction, state)
+    wanted, density = turn_density(
+        air, guide, each, total, h, up, direction, sun, at_ground, order, turned
+    )
+    return turned, wanted / density if density > 0.0 else 0.0
+
+
+@kernel
+def turn_density(air, guide, each, total, h, up, direction, sun, at_ground, order, turned):
+    """Return what a vertex sends back of light from `turned`, and the density of drawing that."""
+    toward_sun = TOWARD_SUN / order if total > 0.0 else 0.0
+    guided = GUIDED / order
     if at_ground:
         wanted = max(0.0, dot(up, turned)) / math.pi
         lobe = wanted
     else:
         wanted, lobe = phase_and_lobe(air, each, total, direction, turned)
     density = (1.0 - toward_sun - guided) * lobe
-    density += guided * guided_density(guide, h, mu_s, up, sun, turned)
+    density += guided * guided_density(guide, h, dot(up, sun), up, sun, turned)
     if toward_sun > 0.0:
         _, sun_lobe = phase_and_lobe(air, each, total, turned, sun)
         density += toward_sun * sun_lobe
-    return turned, wanted / density if density > 0.0 else 0.0
+    return wanted, density
 
 
 class _Room(NamedTuple):

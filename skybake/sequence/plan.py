@@ -135,7 +135,7 @@ class Plan:
                 "label": frame.label,
                 "file": str(frame.output),
                 "preview": None if frame.preview is None else str(frame.preview),
-                **frame.settings.recipe(),
+                **frame.settings.recipe(has_clouds=bool(self.planet(frame).clouds)),
                 "set": self.planet(frame).recipe.get("set", {}),
                 **frame.attributes,
             }

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from skybake.baking.paths import preview_beside, world_name
 from skybake.ephemeris.moment import Moment, TimeSpan
@@ -33,6 +33,7 @@ def plan_sequence(
     changes: PresetChanges | Mapping[str, Any] | None = None,
     settings: MapSettings | None = None,
     exposure_curve: ExposureCurve | str | Path | None = None,
+    cloud_time: float | Ramp | None = None,
     output: str | Path | None = None,
     preview: str | Path | bool = False,
 ) -> Plan:
@@ -63,6 +64,9 @@ def plan_sequence(
         All other settings of the maps.
     exposure_curve : ExposureCurve, str or Path, optional
         What 1.0 stands for in each frame, or its CSV file.
+    cloud_time : float or Ramp, optional
+        For which clouds have drifted; by default, with times of Earth's clock, as long as since
+        the first of them, else as in `settings`. [s]
     output : str or Path, optional
         Pattern of the maps' files, as ``sky.####.exr``; by default named after the world.
     preview : str, Path or bool, optional
@@ -88,6 +92,9 @@ def plan_sequence(
     if moments:
         check_planet(moments[0].place, planet_name(preset))
     along = shares(numbers)
+    drift = _drift(moments)
+    if cloud_time is not None:
+        drift = [cast(float, _at(cloud_time, share)) for share in along]
     planets = _planets(preset, changes, along)
     output = Path(output or _default_output(planets))
     maps = _pattern("output", output, numbers)
@@ -107,6 +114,7 @@ def plan_sequence(
             distance_of_sun(planets[world], moment, sun_distance),
             _at(altitude, share),
             None if exposure_curve is None else exposure_curve.at(number),
+            None if drift is None or not planets[world].clouds else drift[i],
         )
         planned.append(
             Frame(
@@ -200,6 +208,14 @@ def _pattern(argument: str, text: str | Path, numbers: Sequence[int]) -> FramePa
     return pattern
 
 
+def _drift(moments: Sequence[Moment]) -> list[float] | None:
+    """Return the times since the first moment, or None if there are none with a date. [s]"""
+    first = moments[0].time if moments else None
+    if first is None:
+        return None
+    return [(one.time - first).total_seconds() for one in moments if one.time is not None]
+
+
 def _at(value: float | Ramp | None, share: float) -> float | None:
     return value.at(share) if isinstance(value, Ramp) else value
 
@@ -218,6 +234,7 @@ def _settings_at(
     sun_distance: float | None,
     altitude: float | None,
     ev: float | None,
+    cloud_time: float | None,
 ) -> MapSettings:
     """Return settings with what a frame has of its own; None leaves a value as it is.
 
@@ -233,4 +250,5 @@ def _settings_at(
         lighting = replace(lighting, sun_azimuth=sun_azimuth)
     if ev is not None:
         encoding = replace(encoding, ev=ev)
-    return MapSettings(view, lighting, encoding)
+    clouds = settings.clouds if cloud_time is None else replace(settings.clouds, time=cloud_time)
+    return MapSettings(view, lighting, encoding, clouds)

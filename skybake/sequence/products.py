@@ -142,7 +142,9 @@ def default_manifest(plan: Plan) -> Path:
 def _header(products: Products) -> SequenceHeader:
     plan = products.plan
     planet, settings = plan.planets[0], plan.frames[0].settings
-    maps = [frame.settings.recipe() for frame in plan.frames]
+    maps = [
+        frame.settings.recipe(has_clouds=bool(plan.planet(frame).clouds)) for frame in plan.frames
+    ]
     worlds = [planet.recipe for planet in plan.planets]
     return SequenceHeader(
         preset=planet.name,

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from skybake.commands.options import values
+from skybake.commands.options.clouds import absolute_layer
 from skybake.commands.options.rules import Needs, options_together
 from skybake.commands.options.world import read_value
 
@@ -152,6 +153,8 @@ def _word(option: str, name: str, value: Any) -> str:
         value = str(Path(value).absolute())
     elif name in {"changes", "ground_albedo"}:
         value = _with_absolute_file(value)
+    elif name == "clouds":
+        value = absolute_layer(value)
     return f"{option}={value}"
 
 
@@ -161,6 +164,8 @@ def _with_absolute_file(change: str) -> str:
 
     key, equals, value = change.rpartition("=")
     file = read_value(value.strip())
-    if not isinstance(file, str) or not is_user_file(file):
+    # 3/8 of the sky is no path.
+    is_cover = key.strip().endswith(".cover")
+    if is_cover or not isinstance(file, str) or not is_user_file(file):
         return change
     return f"{key}{equals}{Path(file).absolute()}"

@@ -177,15 +177,16 @@ def map_needs(options: Mapping[str, Any]) -> Needs:
     }
 
 
-def map_settings(options: Mapping[str, Any], **others: float) -> MapSettings:
+def map_settings(options: Mapping[str, Any], **others: Any) -> MapSettings:
     """Return the settings of a map.
 
     Parameters
     ----------
     options : mapping
         With the values of `map_options`.
-    **others : float
-        Positions of the sun and the observer, by the names of `skybake.image.settings`.
+    **others
+        Positions of the sun and the observer, and settings of clouds, as of
+        `skybake.image.settings.map_settings`.
 
     Raises
     ------

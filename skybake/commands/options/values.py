@@ -35,6 +35,7 @@ UNITS = ("ev15", "nits")
 PIXELS = ("auto", "half", "float")
 SUN_DISCS = ("include", "exclude", "only")
 METHODS = ("full", "hillaire", "march")
+CLOUD_QUALITIES = ("draft", "normal", "high")
 VIEWS = ("aces1", "aces2")
 COLDEST, HOTTEST = 1000.0, 25_000.0
 DAYS_FROM_TODAY = {"yesterday": -1, "today": 0, "tomorrow": 1}
@@ -295,6 +296,11 @@ def duration(text: str) -> float:
     if not seconds > 0.0:
         raise click.BadParameter(f"must be greater than 0s, got {text}")
     return seconds
+
+
+def duration_from_zero(text: str) -> float:
+    """Read a duration such as ``2min``, or ``0s``. [s]"""
+    return _parse(text, parse_duration)
 
 
 def folder(text: str) -> Path:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from skybake.commands.options import values
+from skybake.commands.options.clouds import NONE, clouds_option
 from skybake.commands.options.rules import is_given, option_names, options_together, usage_faults
 from skybake.errors import InputError
 from skybake.units import parse_column
@@ -34,14 +35,17 @@ def changes_from_options(context: click.Context) -> PresetChanges:
     with usage_faults(context):
         return PresetChanges(
             values=options["changes"],
+            clouds=tuple(layer for layer in options["clouds"] if layer != NONE),
+            keep_clouds=NONE not in options["clouds"],
             **{name: options[name] for name in _CHANGES},
-            sources={"values": "--set"} | {name: names[name] for name in _CHANGES},
+            sources={"values": "--set", "clouds": "--clouds"}
+            | {name: names[name] for name in _CHANGES},
         )
 
 
 def is_changed(context: click.Context) -> bool:
     """Whether any of `change_options` is given."""
-    return any(is_given(context, name) for name in ("changes", *_CHANGES))
+    return any(is_given(context, name) for name in ("changes", "clouds", *_CHANGES))
 
 
 def world_from_options(context: click.Context) -> Planet:
@@ -112,6 +116,7 @@ change_options = options_together(
         multiple=True,
         help="Change the preset, such as aerosol.optical_depth=0.3; may be repeated.",
     ),
+    clouds_option,
     click.option(
         "--visibility",
         metavar="LENGTH",

@@ -1,0 +1,94 @@
+"""How far from a point there is no cloud, so that a ray may step over what is empty."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from skybake.cloud_fields.surface import edge_width, mean_shift, node_distance, reach_of_noise
+from skybake.jit.kernel import kernel
+
+
+def block_clearance(
+    is_cloudy: npt.NDArray[np.bool_], block: npt.NDArray[np.float64]
+) -> npt.NDArray[np.float32]:
+    """Return the distance from every block to the nearest that may hold cloud.
+
+    Parameters
+    ----------
+    is_cloudy : ndarray of bool, shape (z, y, x)
+        Blocks that may hold cloud; periodic in y and x.
+    block : ndarray of float64, shape (3,)
+        Size of a block along z, y and x. [km]
+
+    Returns
+    -------
+    ndarray of float32, shape (z, y, x)
+        Between the nearest points of two blocks. [km]
+    """
+    squared = np.where(is_cloudy, 0.0, np.inf)
+    for axis, size in enumerate(block):
+        squared = _nearest_along(squared, axis, float(size), is_periodic=axis > 0)
+    # A field without cloud is clear as far as its own period.
+    farthest = float(np.max(block * is_cloudy.shape))
+    return np.minimum(np.sqrt(squared), farthest).astype(np.float32)
+
+
+def _nearest_along(
+    squared: npt.NDArray[np.float64], axis: int, size: float, *, is_periodic: bool
+) -> npt.NDArray[np.float64]:
+    count = squared.shape[axis]
+    values = np.moveaxis(squared, axis, 0)
+    nearest = values.copy()
+    for offset in range(1, count // 2 + 1 if is_periodic else count):
+        gap = (size * (offset - 1)) ** 2
+        if is_periodic:
+            for turned in (np.roll(values, offset, 0), np.roll(values, -offset, 0)):
+                np.minimum(nearest, turned + gap, out=nearest)
+        else:
+            nearest[offset:] = np.minimum(nearest[offset:], values[:-offset] + gap)
+            nearest[:-offset] = np.minimum(nearest[:-offset], values[offset:] + gap)
+    return np.moveaxis(nearest, 0, axis)
+
+
+@kernel
+def voxel_clearance(field, x, y, altitude):
+    """Distance from a point to the nearest block with voxels that are not empty. [km]"""
+    return _outside(field, altitude) or _of_block(field, x, y, altitude)
+
+
+@kernel
+def surface_clearance(field, x, y, altitude, blur):
+    """Distance from a point to where displacement and blur may carry the surface. [km]"""
+    outside = _outside(field, altitude)
+    if outside > 0.0:
+        return outside
+    clear = _of_block(field, x, y, altitude)
+    if clear > 0.0:
+        return clear
+    x -= math.floor(x / field.period[0]) * field.period[0]
+    y -= math.floor(y / field.period[1]) * field.period[1]
+    fz = (altitude - field.base) / field.spacing[0]
+    fz = min(max(fz, 0.0), field.distance.shape[0] - 1.000001)
+    distance = node_distance(field, x, y, fz) - mean_shift(field, blur)
+    reach = 0.5 * edge_width(field, blur) + reach_of_noise(field, blur)
+    below = field.condensation - altitude - reach
+    return max((distance - reach) / field.steepness, below)
+
+
+@kernel
+def _outside(field, altitude):
+    """Height above or below the layer, 0 within. [km]"""
+    return max(max(altitude - field.top, field.base - altitude), 0.0)
+
+
+@kernel
+def _of_block(field, x, y, altitude):
+    levels, rows, columns = field.clearance.shape
+    fx, fy = x / field.period[0], y / field.period[1]
+    i, j = (fx - math.floor(fx)) * columns, (fy - math.floor(fy)) * rows
+    k = min(max((altitude - field.base) / field.block[0], 0.0), levels - 0.5)
+    i, j = min(i, columns - 0.5), min(j, rows - 0.5)
+    return float(field.clearance[np.uint32(k), np.uint32(j), np.uint32(i)])

@@ -1,0 +1,257 @@
+"""Makes fields of surfaces that have the cover and the optical depth that were asked for."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from skybake.cloud_fields.clearance import block_clearance
+from skybake.cloud_fields.field import SURFACE, CloudField
+from skybake.cloud_fields.surface import STEP, surface_extinction
+from skybake.jit.kernel import kernel
+from skybake.jit.workers import ALL_CPUS
+
+LEAST_DEPTH = 0.2
+"""Optical depth from which a column counts as covered, or this share of the mean if that is
+below 1."""
+
+_BLURS = 9
+# Prime, so that columns meet nodes and noise at every phase.
+_COLUMNS = 191
+_FEW_COLUMNS = 97
+_NODES_PER_BLOCK = (3, 6, 6)
+_HALVINGS = 14
+
+
+class Surface(NamedTuple):
+    """Clouds whose cover and optical depth are still to be adjusted.
+
+    Attributes
+    ----------
+    nodes : ndarray of float32, shape (z, y, x)
+        Distance from their surface, negative inside. [km]
+    base : float
+        Altitude of the lowest nodes. [km]
+    profile : ndarray of float64, shape (z,)
+        Relative extinction inside, at the nodes' heights.
+    others
+        As in `CloudField`.
+    """
+
+    nodes: npt.NDArray[np.float32]
+    spacing: npt.NDArray[np.float64]
+    base: float
+    profile: npt.NDArray[np.float64]
+    edge: float
+    widest_edge: float
+    condensation: float
+    displacement: npt.NDArray[np.float64]
+    noise: npt.NDArray[np.int8]
+
+
+def fitted_field(
+    surface: Surface, cover: float, optical_depth: float, farthest: float
+) -> CloudField:
+    """Move a surface and scale its extinction until cover and optical depth are met.
+
+    Parameters
+    ----------
+    surface : Surface
+        The clouds.
+    cover : float
+        Share of columns whose optical depth is above `LEAST_DEPTH`, in (0, 1].
+    optical_depth : float
+        Mean of those columns.
+    farthest : float
+        By which the surface may be moved inward or outward; where that is not enough, cover is
+        not met. [km]
+    """
+    field = _unfitted(surface)
+    columns = np.empty((_COLUMNS, _COLUMNS), np.float32)
+    low, high = -farthest, farthest
+    for _ in range(_HALVINGS):
+        offset = 0.5 * (low + high)
+        relative = _column_depths(field, offset, columns)
+        if _cover(relative, _scale(relative, optical_depth), optical_depth) < cover:
+            low = offset
+        else:
+            high = offset
+    relative = _column_depths(field, high, columns)
+    field = field._replace(
+        extinction=field.extinction * _scale(relative, optical_depth),
+        shift=np.full(_BLURS, high),
+    )
+    field = field._replace(shift=_mean_keeping_shifts(field))
+    return _with_clearance(field)
+
+
+def column_cover(depths: npt.NDArray[np.float32], optical_depth: float) -> float:
+    """Return the share of columns that count as covered."""
+    return _cover(depths, 1.0, optical_depth)
+
+
+def measured_depths(field: CloudField, columns: int) -> npt.NDArray[np.float32]:
+    """Return the optical depths of vertical columns, in a square of them."""
+    return _column_depths(field, None, np.empty((columns, columns), np.float32))
+
+
+def _unfitted(surface: Surface) -> CloudField:
+    levels, rows, columns = surface.nodes.shape
+    dz, dy, dx = (float(each) for each in surface.spacing)
+    distance = np.clip(np.rint(surface.nodes / STEP), -32767, 32767).astype(np.int16)
+    periods = 1.0 / surface.displacement[:, 5]
+    return CloudField(
+        kind=SURFACE,
+        values=np.zeros((1, 1, 1), np.float32),
+        distance=distance,
+        spacing=surface.spacing,
+        period=np.array([columns * dx, rows * dy]),
+        origin=np.zeros(2),
+        base=surface.base,
+        top=surface.base + (levels - 1) * dz,
+        extinction=surface.profile,
+        edge=surface.edge,
+        widest_edge=surface.widest_edge,
+        condensation=surface.condensation,
+        shift=np.zeros(_BLURS),
+        largest_blur=max(0.25 * float(periods.max()), surface.widest_edge - surface.edge),
+        displacement=surface.displacement,
+        noise=surface.noise,
+        clearance=np.zeros((1, 1, 1), np.float32),
+        block=np.ones(3),
+        steepness=_steepness(surface.nodes, surface.spacing),
+    )
+
+
+def _column_depths(
+    field: CloudField, offset: float | None, depths: npt.NDArray[np.float32]
+) -> npt.NDArray[np.float32]:
+    if offset is not None:
+        field = field._replace(shift=np.full(_BLURS, offset))
+
+    def measure(first: int, last: int) -> None:
+        _measure_columns(field, 0.0, depths, first, last)
+
+    ALL_CPUS.run_rows(len(depths), measure, chunk=8)
+    return depths
+
+
+def _scale(relative: npt.NDArray[np.float32], optical_depth: float) -> float:
+    """Return the factor with which columns that count as covered have a mean optical depth."""
+    threshold = _threshold(optical_depth)
+    scale = optical_depth / max(float(relative.max()), 1e-30)
+    for _ in range(30):
+        covered = relative[scale * relative > threshold]
+        if not covered.size:
+            scale *= 2.0
+            continue
+        better = optical_depth / float(covered.mean(dtype=np.float64))
+        if abs(better - scale) <= 1e-6 * scale:
+            break
+        scale = better
+    return scale
+
+
+def _cover(depths: npt.NDArray[np.float32], scale: float, optical_depth: float) -> float:
+    return float((scale * depths > _threshold(optical_depth)).mean())
+
+
+def _threshold(optical_depth: float) -> float:
+    return LEAST_DEPTH * min(optical_depth, 1.0)
+
+
+def _mean_keeping_shifts(field: CloudField) -> npt.NDArray[np.float64]:
+    """Return the shift of each blur with which the mean extinction is that without blur."""
+    shifts = field.shift.copy()
+    depths = np.empty((_FEW_COLUMNS, _FEW_COLUMNS), np.float32)
+
+    def mean(blur: float, shift: float) -> float:
+        moved = field._replace(shift=np.full(_BLURS, shift))
+
+        def measure(first: int, last: int) -> None:
+            _measure_columns(moved, blur, depths, first, last)
+
+        ALL_CPUS.run_rows(_FEW_COLUMNS, measure, chunk=16)
+        return float(depths.mean(dtype=np.float64))
+
+    wanted = mean(0.0, shifts[0])
+    for i in range(1, _BLURS):
+        blur = field.largest_blur * (i / (_BLURS - 1)) ** 2
+        before, step = float(shifts[i - 1]), 0.25 * field.edge
+        low = mean(blur, before) - wanted
+        high = mean(blur, before + step) - wanted
+        for _ in range(3):
+            if high == low:
+                break
+            after = before + step - high * step / (high - low)
+            after = min(max(after, shifts[0] - field.widest_edge), shifts[0] + field.widest_edge)
+            before, step, low = before + step, after - before - step, high
+            high = mean(blur, after) - wanted
+        shifts[i] = before + step
+    return shifts
+
+
+def _with_clearance(field: CloudField) -> CloudField:
+    """Find the blocks that no displacement and no blur carries the surface into."""
+    blurs = field.largest_blur * np.linspace(0.0, 1.0, 4 * _BLURS - 3) ** 2
+    amplitudes, waves = field.displacement[:, 0], field.displacement[:, 5]
+    noise = np.maximum(amplitudes * (1.0 - 4.0 * blurs[:, None] * waves), 0.0).sum(1)
+    edges = np.minimum(field.edge + blurs, field.widest_edge)
+    # Between these blurs the reach bends; a step more covers what it may exceed them by.
+    reach = float(np.max(noise + 0.5 * edges)) + float(np.abs(np.diff(noise)).max(initial=0.0))
+    cloudy = field.distance < (reach + float(field.shift.max())) / STEP
+    for axis in range(3):
+        turned = np.roll(cloudy, -1, axis)
+        cloudy = cloudy | turned
+    cloudy = cloudy[:-1]
+    bottom = field.condensation - reach
+    heights = field.base + np.arange(1, len(cloudy) + 1) * field.spacing[0]
+    cloudy &= (heights > bottom)[:, None, None]
+    mask, block = blocks_of(cloudy, field.spacing, _NODES_PER_BLOCK)
+    return field._replace(clearance=block_clearance(mask, block), block=block)
+
+
+def blocks_of(
+    cells: npt.NDArray[np.bool_], spacing: npt.NDArray[np.float64], cells_per_block: tuple[int, ...]
+) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.float64]]:
+    """Return which blocks hold a cell that is set, and the blocks' size. [km]"""
+    block = np.empty(3)
+    for axis, (size, step) in enumerate(zip(cells.shape, cells_per_block, strict=True)):
+        count = max(1, round(size / step))
+        edges = [(b * size / count, (b + 1) * size / count) for b in range(count)]
+        slices = [slice(int(first), int(np.ceil(last - 1e-9))) for first, last in edges]
+        taken = np.moveaxis(cells, axis, 0)
+        cells = np.moveaxis(np.stack([taken[each].any(0) for each in slices]), 0, axis)
+        block[axis] = spacing[axis] * size / count
+    return cells, block
+
+
+def _steepness(nodes: npt.NDArray[np.float32], spacing: npt.NDArray[np.float64]) -> float:
+    """Return the largest gradient of values that are trilinear between nodes, at least 1."""
+    squared: npt.NDArray[np.float32] | float = 0.0
+    for axis in range(3):
+        slopes = np.abs(np.roll(nodes, -1, axis) - nodes) / np.float32(spacing[axis])
+        for other in range(3):
+            if other != axis:
+                slopes = np.maximum(slopes, np.roll(slopes, -1, other))
+        squared = squared + slopes[:-1] ** 2
+    return max(1.0, float(np.sqrt(np.max(squared))))
+
+
+@kernel
+def _measure_columns(field, blur, depths, first, last):
+    """Optical depths of vertical columns of rows from `first` to below `last`."""
+    count = depths.shape[0]
+    levels = field.distance.shape[0] - 1
+    dz = field.spacing[0]
+    for j in range(first, last):
+        y = (j + 0.5) / count * field.period[1]
+        for i in range(count):
+            x = (i + 0.5) / count * field.period[0]
+            total = 0.0
+            for k in range(levels):
+                altitude = field.base + (k + 0.5) * dz
+                total += surface_extinction(field, x, y, altitude, blur)
+            depths[j, i] = total * dz
