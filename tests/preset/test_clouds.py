@@ -244,6 +244,12 @@ def test_another_kind_takes_the_place_of_the_whole_layer(tmp_path):
     assert (low.kind, low.base) == ("stratus", 0.6)
 
 
+def test_a_layer_may_be_named_tile(tmp_path):
+    path = tmp_path / "own.toml"
+    path.write_text('extends = "earth-fair"\n[clouds.tile]\nkind = "cirrus"\n')
+    assert [one.name for one in load_preset(path).clouds] == ["low", "tile"]
+
+
 def test_a_key_of_a_layer_that_is_not_there_is_refused():
     with pytest.raises(PresetError, match=r"'clouds\.lwo\.cover': unknown key; nearest: clouds"):
         load_preset("earth-fair", {"clouds.lwo.cover": 0.3})
