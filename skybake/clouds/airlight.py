@@ -85,6 +85,13 @@ def shadowed_stretch(
     return np.where(misses, 0.0, begin), np.where(misses, 0.0, end), hits
 
 
+def stretch_ends(begin: Array, end: Array) -> Array:
+    """Divide the ways from `begin` to `end` into stretches, shape (ray, stretch + 1). [km]"""
+    share = (np.arange(STRETCHES + 1) / STRETCHES) ** CROWDING
+    ends: Array = begin[:, None] + (end - begin)[:, None] * share
+    return ends
+
+
 def build_table(
     air: ClearAir,
     altitude: float,
@@ -114,8 +121,7 @@ def build_table(
         Of clouds and ground, seen from above.
     """
     begin, end, hits = shadowed_stretch(altitude, directions, air.radius, top)
-    share = (np.arange(STRETCHES + 1) / STRETCHES) ** CROWDING
-    distance = begin[:, None] + (end - begin)[:, None] * share
+    distance = stretch_ends(begin, end)
     # Stay above the ground, whose light belongs to what is behind.
     distance[hits, -1] *= 1.0 - 1e-7
     spans = air.spans(altitude, directions, distance, sun)

@@ -11,9 +11,16 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.cloud_fields.field import SURFACE, CloudField
-from skybake.clouds.air import ClearAir
-from skybake.clouds.airlight import AirTable, Dimming, build_table, fill_lit
-from skybake.clouds.compose import compose
+from skybake.clouds.air import GROUNDED, ClearAir
+from skybake.clouds.airlight import (
+    AirTable,
+    Dimming,
+    build_table,
+    fill_lit,
+    shadowed_stretch,
+    stretch_ends,
+)
+from skybake.clouds.compose import compose, fill_places
 from skybake.clouds.layer import Grid, SolvedLayer, channels_to_wavelengths, solve_layer
 from skybake.clouds.march import Marching, allocate_march, fill_march
 from skybake.clouds.particles import divide_phase
@@ -22,12 +29,32 @@ from skybake.clouds.shadow import dim_visibility
 from skybake.jit.arguments import flatten
 from skybake.jit.workers import Workers
 from skybake.optics.medium import Array
+from skybake.sky.table import horizon_angles
 
 Floats = npt.NDArray[np.float32]
 
 AT_ONCE = 4096
 TAPS = 8
 REACH = 2.0
+"""Samples of the detailed field on the first way to the sun, and its length in voxels of light."""
+
+TABLE_ROWS, TABLE_COLUMNS = 28, 17
+"""Rays of clear air: above the horizon and below it each, and from the sun to its opposite."""
+
+NODE_ROWS, NODE_COLUMNS = 96, 256
+"""The same, all around, of places for which shadows are looked up."""
+
+HIGH_SUN, NEAR = math.radians(12.0), math.radians(5.0)
+"""Elevation from which the sun is the same over all clouds of a layer, unless they are seen over
+more than this angle at the planet's centre. [rad]"""
+
+SUNS = tuple(math.radians(each) for each in (-18, -9, -5, -2, 0, 2, 5, 12, 30, 60))
+"""Elevations of suns between which light is interpolated, [rad]"""
+
+CLOSE = math.radians(0.8)
+
+EDGE = 1e-5
+"""Angle by which they stay away from the horizon. [rad]"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,9 +135,23 @@ class Cloudscape:
         return out
 
     def suns(self, layer: Layer) -> Array:
-        """Heights of the sun that are needed where the observer sees a layer, shape (sun, 3)."""
-        del layer
-        return self.sun[None]
+        """Suns over the places at which the observer sees a layer, shape (sun, 3).
+
+        Where clouds are far away the sun stands higher or lower by their angle at the planet's
+        centre, which counts while it is low.
+        """
+        elevation = math.asin(float(np.clip(self.sun[2], -1.0, 1.0)))
+        azimuth = math.atan2(self.sun[0], self.sun[1])
+        away = sum(
+            math.acos(self.air.radius / (self.air.radius + max(h, GROUNDED)))
+            for h in (layer.field.top, self.altitude)
+        )
+        low, high = max(elevation - away, -0.5 * math.pi), min(elevation + away, 0.5 * math.pi)
+        if low > HIGH_SUN and away < NEAR:
+            return self.sun[None]
+        between = [each for each in SUNS if low + CLOSE < each < high - CLOSE]
+        nodes = sorted({low, *between, high})
+        return np.stack([sun_vector(azimuth, each) for each in nodes])
 
     @property
     def top(self) -> float:
@@ -245,6 +286,94 @@ class Cloudscape:
             self.workers.run_rows(len(directions), work, chunk=AT_ONCE // 8)
         return seen, passing
 
+    @cached_property
+    def nodes(self) -> tuple[AirTable, Floats, Floats, Array]:
+        """Light of the air in all directions: its table, `lit`, `through` and distances at nodes."""
+        sun_azimuth = math.atan2(self.sun[0], self.sun[1])
+        zenith, azimuth = _grid(self.first, self.horizon, TABLE_ROWS, TABLE_COLUMNS, is_half=True)
+        table = self.table(unit_vectors(zenith, azimuth + sun_azimuth))
+        zenith, azimuth = _grid(self.first, self.horizon, NODE_ROWS, NODE_COLUMNS, is_half=False)
+        directions = unit_vectors(zenith, azimuth)
+        row, weight = np.empty((zenith.size, 4), np.int64), np.empty((zenith.size, 4))
+        fill_places(
+            zenith,
+            azimuth - sun_azimuth,
+            self.first,
+            self.horizon,
+            TABLE_ROWS,
+            TABLE_COLUMNS,
+            True,
+            row,
+            weight,
+        )
+        begin, end, _ = shadowed_stretch(self.altitude, directions, self.air.radius, self.top)
+        distance = stretch_ends(begin, end)
+        visible = self.visible(directions, distance)
+        lit, through = self.lit(table, row, weight, directions, visible)
+        return table, lit, through, distance
+
+    @property
+    def horizon(self) -> float:
+        """Zenith angle of the ground's edge. [rad]"""
+        return horizon_angles(self._place, self.air.radius, self._roof)[1]
+
+    @property
+    def first(self) -> float:
+        """Zenith angle at which the atmosphere begins. [rad]"""
+        return horizon_angles(self._place, self.air.radius, self._roof)[0]
+
+    @property
+    def _place(self) -> float:
+        return self.air.radius + max(self.altitude, GROUNDED)
+
+    @property
+    def _roof(self) -> float:
+        return self.air.atmosphere.medium.r_top
+
+    def put_into(
+        self, total: Floats, zenith: Array, bearing: Array, pixel: float
+    ) -> tuple[Floats, Floats]:
+        """Put clouds into the light of a clear sky.
+
+        Parameters
+        ----------
+        total : ndarray of float32, shape (ray, channel)
+            Radiance without clouds.
+        zenith, bearing : ndarray of float64, shape (ray,)
+            Directions. [rad]
+        pixel : float
+            Angle below which nothing needs to be resolved. [rad]
+
+        Returns
+        -------
+        light : ndarray of float32, shape (ray, channel)
+        opacity : ndarray of float32, shape (ray,)
+            Share of what is behind that clouds hide.
+        """
+        _, lit, through, distance = self.nodes
+        directions = unit_vectors(zenith, bearing)
+        seen, passing = self.see(directions, pixel)
+        row, weight = np.empty((zenith.size, 4), np.int64), np.empty((zenith.size, 4))
+        out = np.empty_like(total)
+        opacity = np.empty(zenith.size, np.float32)
+        flat = [flatten(each) for each in (total, row, weight, distance, lit, through, seen)]
+        angles = flatten(np.ascontiguousarray(zenith)), flatten(np.ascontiguousarray(bearing))
+        fill_places(
+            *angles, self.first, self.horizon, NODE_ROWS, NODE_COLUMNS, False, *flat[1:3]
+        )
+
+        def work(first: int, last: int) -> None:
+            compose(*flat, passing, first, last, out, opacity)
+
+        self.workers.run_rows(zenith.size, work, chunk=AT_ONCE)
+        return out, opacity
+
+    def transmittance(self, directions: Array) -> Floats:
+        """Share of a sharp image, such as the sun's disc, that all layers let through."""
+        _, passing = self.see(directions, 0.0)
+        through: Floats = passing[:, :, 1].prod(axis=0)
+        return through
+
     def radiance(self, directions: Array) -> Array:
         """Radiance by channel of single rays, shape (ray, channel); each with its own air."""
         table = self.table(directions)
@@ -272,6 +401,29 @@ class Cloudscape:
             np.empty(count, np.float32),
         )
         return out.astype(float)
+
+
+def unit_vectors(zenith: Array, bearing: Array) -> Array:
+    """Unit vectors of directions, shape (n, 3): x east, y north, z up."""
+    sine = np.sin(zenith)
+    return np.stack([sine * np.sin(bearing), sine * np.cos(bearing), np.cos(zenith)], axis=-1)
+
+
+def _grid(
+    first: float, horizon: float, rows: int, columns: int, *, is_half: bool
+) -> tuple[Array, Array]:
+    """Zenith angles and azimuths of the nodes of `fill_places`, each of shape (node,)."""
+    x = np.linspace(0.0, 1.0, rows)
+    above = np.minimum(horizon - (horizon - first) * (1.0 - x) ** 2, horizon - EDGE)
+    below = np.maximum(horizon + (math.pi - horizon) * x**2, horizon + EDGE)
+    zenith = np.concatenate([above, below])
+    around = (
+        np.linspace(0.0, math.pi, columns)
+        if is_half
+        else 2.0 * math.pi * np.arange(columns) / columns
+    )
+    zenith, azimuth = np.meshgrid(zenith, around, indexing="ij")
+    return zenith.ravel(), azimuth.ravel()
 
 
 def sun_vector(azimuth: float, elevation: float) -> Array:
