@@ -9,9 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from skybake.jit.workers import ALL_CPUS, Workers
-from skybake.optics.medium import Array
+from skybake.jit.kept import Kept
+from skybake.optics.medium import Array, Medium
 from skybake.optics.phase import eval_phase
-from skybake.scattering.atmosphere import dark_atmosphere
+from skybake.scattering.atmosphere import atmosphere_key, dark_atmosphere
 from skybake.scattering.closure import close_field
 from skybake.scattering.ray import trace_rays
 from skybake.scattering.segments import trace_segments
@@ -22,6 +23,9 @@ GROUNDED = 1e-6
 """Least altitude of a place, so that it sees the sky above itself. [km]"""
 
 DISC_POINTS = 9
+
+KEPT = 2
+"""Atmospheres over a bright ground that are kept in memory."""
 
 BRIGHT = 0.8
 """Albedo of the ground from which, with the true one, the light over any ground is derived."""
@@ -171,20 +175,8 @@ class ClearAir:
 
     @cached_property
     def _closures(self) -> tuple[Atmosphere, Atmosphere]:
-        """The air over its own ground and over a bright one, by Hillaire's closure.
-
-        It is off by some percent by day, of a difference that is itself some percent of the light.
-        """
-        medium = self.atmosphere.medium
-        dark = dark_atmosphere(medium, "hillaire", self.workers)
-        ground = np.full_like(dark.scaled.medium.ground_albedo, BRIGHT)
-        scaled = dark.scaled._replace(medium=dark.scaled.medium._replace(ground_albedo=ground))
-        bright = dark._replace(scaled=scaled)
-        fields = (close_field(each, self.workers) for each in (dark, bright))
-        return tuple(
-            each._replace(field=field)
-            for each, field in zip((dark, bright), fields, strict=True)
-        )
+        key = atmosphere_key(self.atmosphere.medium, "hillaire")
+        return _recent.get(key, lambda: _close(self.atmosphere.medium, self.workers))
 
     def _starts(
         self, altitude: float, mu: Array, sun: Array, nu: Array
@@ -192,6 +184,24 @@ class ClearAir:
         place = self.radius + max(altitude, GROUNDED)
         nu = np.clip(nu, -1.0, 1.0)
         return np.full(mu.shape, place), mu.copy(), np.full(mu.shape, sun[2]), nu
+
+
+_recent: Kept[str, tuple[Atmosphere, Atmosphere]] = Kept(KEPT)
+
+
+def _close(medium: Medium, workers: Workers) -> tuple[Atmosphere, Atmosphere]:
+    """Build the air over its own ground and over a bright one, by Hillaire's closure.
+
+    It is off by some percent by day, of a difference that is itself some percent of the light.
+    """
+    dark = dark_atmosphere(medium, "hillaire", workers)
+    ground = np.full_like(dark.scaled.medium.ground_albedo, BRIGHT)
+    scaled = dark.scaled._replace(medium=dark.scaled.medium._replace(ground_albedo=ground))
+    bright = dark._replace(scaled=scaled)
+    return (
+        dark._replace(field=close_field(dark, workers)),
+        bright._replace(field=close_field(bright, workers)),
+    )
 
 
 def _trace(

@@ -34,9 +34,9 @@ from skybake.sky.table import horizon_angles
 Floats = npt.NDArray[np.float32]
 
 AT_ONCE = 4096
-TAPS = 8
-REACH = 2.0
-"""Samples of the detailed field on the first way to the sun, and its length in voxels of light."""
+TAPS, REACH = (4, 8), (1.0, 2.0)
+"""Samples of the detailed field on the first way to the sun, and its length in voxels of light: of
+surfaces, and of voxels whose light is on themselves."""
 
 TABLE_ROWS, TABLE_COLUMNS = 28, 17
 """Rays of clear air: above the horizon and below it each, and from the sun to its opposite."""
@@ -52,6 +52,8 @@ SUNS = tuple(math.radians(each) for each in (-18, -9, -5, -2, 0, 2, 5, 12, 30, 6
 """Elevations of suns between which light is interpolated, [rad]"""
 
 CLOSE = math.radians(0.8)
+
+SUN_POINTS = 32
 
 EDGE = 1e-5
 """Angle by which they stay away from the horizon. [rad]"""
@@ -262,8 +264,8 @@ class Cloudscape:
                 depth=self.depth,
                 shortest=0.008 if is_surface else 0.2 * float(layer.grid.spacing[0]),
                 longest=0.5 * float(layer.grid.spacing[2]),
-                taps=TAPS,
-                reach=REACH * float(layer.grid.spacing[2]),
+                taps=TAPS[not is_surface],
+                reach=REACH[not is_surface] * float(layer.grid.spacing[2]),
                 pixel=pixel,
             )
             given = flatten(layer.field), flatten(solved.light)
@@ -368,11 +370,21 @@ class Cloudscape:
         self.workers.run_rows(zenith.size, work, chunk=AT_ONCE)
         return out, opacity
 
-    def transmittance(self, directions: Array) -> Floats:
+    def transmittance(self, zenith: Array, bearing: Array) -> Floats:
         """Share of a sharp image, such as the sun's disc, that all layers let through."""
-        _, passing = self.see(directions, 0.0)
+        _, passing = self.see(unit_vectors(zenith, bearing), 0.0)
         through: Floats = passing[:, :, 1].prod(axis=0)
         return through
+
+    def sun_transmittance(self) -> float:
+        """Share of the sun's disc that all layers let through, on average over it."""
+        radius = self.air.sun_radius * np.sqrt((np.arange(SUN_POINTS) + 0.5) / SUN_POINTS)
+        turn = 2.4 * np.arange(SUN_POINTS)
+        zenith = math.acos(float(np.clip(self.sun[2], -1.0, 1.0)))
+        bearing = math.atan2(self.sun[0], self.sun[1])
+        beside = radius * np.sin(turn) / max(math.sin(zenith), 1e-3)
+        points = self.transmittance(zenith + radius * np.cos(turn), bearing + beside)
+        return float(points.mean())
 
     def radiance(self, directions: Array) -> Array:
         """Radiance by channel of single rays, shape (ray, channel); each with its own air."""

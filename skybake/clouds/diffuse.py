@@ -24,7 +24,13 @@ TOLERANCE = 2e-5
 MAX_PASSES = 200
 FINE_PASSES = 4
 LARGE = 250_000
-"""Voxels from which the first passes are done in a grid of an eighth of them."""
+"""Voxels from which the first passes are done on voxels that are merged by two on each axis."""
+
+SMALL = 30_000
+"""Voxels from which these are merged again."""
+
+ROUGH = 1e-3
+"""Tolerance of what is solved on merged voxels."""
 
 ACROSS = 0.3
 """Of a voxel, by which a ray may move farther than one before its way is divided in parts."""
@@ -87,7 +93,7 @@ class Diffuse(NamedTuple):
     up, down : ndarray of float64, shape (channel,)
         Mean irradiances of horizontal planes: upward at the top, and downward at the base.
     passes : int
-        How many it took.
+        How many it took, those on merged voxels included.
     """
 
     moments: Floats
@@ -162,20 +168,30 @@ def solve_diffuse(
 def _solve_channel(
     voxels: Voxels, scattering: Scattering, entering: Entering, out: Floats
 ) -> tuple[float, float, int]:
-    if voxels.extinction.size < LARGE or min(voxels.extinction.shape) < 4:
+    passes = _Passes(voxels, scattering, entering)
+    if not _can_merge(voxels, LARGE):
         out[...] = 0.0
-        return _Passes(voxels, scattering, entering).until_settled(out, MAX_PASSES, mixes=True)
-    coarse, factor = _merge(voxels), 2
-    light = entering._replace(sun=_merge_levels(entering.sun, coarse.extinction.shape[0]))
-    shape = (*coarse.extinction.shape[:2], out.shape[2], coarse.extinction.shape[2])
-    start = np.zeros(shape, np.float32)
-    passes = _Passes(coarse, scattering, light)
-    *_, number = passes.until_settled(start, MAX_PASSES, mixes=True)
-    _spread(start, factor, out)
-    up, down, more = _Passes(voxels, scattering, entering).until_settled(
-        out, FINE_PASSES, mixes=False
-    )
-    return up, down, number + more
+        return passes.until_settled(out, MAX_PASSES, TOLERANCE)
+    before = _start(voxels, scattering, entering, out)
+    up, down, number = passes.until_settled(out, FINE_PASSES, 0.0)
+    return up, down, before + number
+
+
+def _start(voxels: Voxels, scattering: Scattering, entering: Entering, out: Floats) -> int:
+    """Write moments that were found on merged voxels; return how many passes that took."""
+    merged = _merge(voxels)
+    light = entering._replace(sun=_merge_levels(entering.sun, merged.extinction.shape[0]))
+    shape = (*merged.extinction.shape[:2], out.shape[2], merged.extinction.shape[2])
+    state = np.zeros(shape, np.float32)
+    number = _start(merged, scattering, light, state) if _can_merge(merged, SMALL) else 0
+    *_, more = _Passes(merged, scattering, light).until_settled(state, MAX_PASSES, ROUGH)
+    _spread(state, 2, out)
+    return number + more
+
+
+def _can_merge(voxels: Voxels, least: int) -> bool:
+    levels, rows, columns = voxels.extinction.shape
+    return voxels.extinction.size >= least and levels >= 4 and rows % 2 == 0 and columns % 2 == 0
 
 
 class _Passes:
@@ -201,8 +217,11 @@ class _Passes:
         self._leaving = voxels.leaving
         self._cloudy = voxels.extinction > 0.0
 
-    def until_settled(self, state: Floats, most: int, *, mixes: bool) -> tuple[float, float, int]:
-        """Iterate in place; return the fluxes up and down, and how many passes it took."""
+    def until_settled(self, state: Floats, most: int, tolerance: float) -> tuple[float, float, int]:
+        """Iterate in place; return the fluxes up and down, and how many passes it took.
+
+        Without a tolerance all passes are plain ones.
+        """
         anderson = Anderson(1)
         shape = state.shape
         image = np.empty_like(state)
@@ -210,13 +229,13 @@ class _Passes:
         for number in range(1, most + 1):
             up, down = self._advance(state, image)
             change = _mean_change(state, image, self._cloudy)
-            if mixes and change > TOLERANCE and number < most:
+            if change > tolerance > 0.0 and number < most:
                 old = state.reshape(1, -1).copy()
                 mixed = anderson.step(old, image.reshape(1, -1).copy())
                 state[...] = mixed.reshape(shape)
                 continue
             state[...] = image
-            if change <= TOLERANCE:
+            if change <= tolerance:
                 break
         return up, down, number
 

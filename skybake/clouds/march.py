@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from skybake.cloud_fields.chart import tile_place
 from skybake.cloud_fields.field import clearance_at, extinction_at
 from skybake.clouds.harmonics import fill_harmonics
 from skybake.clouds.light import fill_corners, fill_diffuse, sun_depth, sun_share
@@ -140,8 +141,7 @@ def fill_march(
             px, py, pz = middle * dx, middle * dy, altitude + middle * dz
             above = pz + radius
             h = math.sqrt(px * px + py * py + above * above) - radius
-            x = field.origin[0] + px * radius / above
-            y = field.origin[1] + py * radius / above
+            x, y = tile_place(field, radius, px, py, pz)
             blur = middle * marching.pixel
             shortest = marching.shortest + 0.5 * blur
             clear = clearance_at(field, x, y, h, blur)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from skybake.cloud_fields.chart import tile_place
 from skybake.clouds.light import sun_share
 from skybake.jit.kernel import kernel
 
@@ -69,8 +70,7 @@ def _visible(field, light, leaving, radius, altitude, direction, distance, sun, 
     is_behind = h < base if mu_s > 0.0 else h > top
     if not is_behind and not base <= h <= top:
         return 1.0
-    x = field.origin[0] + px * radius / above
-    y = field.origin[1] + py * radius / above
+    x, y = tile_place(field, radius, px, py, above - radius)
     place = sun_share(light, mu_s)
     which = int(place)
     share = place - which

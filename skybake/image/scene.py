@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from functools import cache, cached_property
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from skybake.colour.observer import xyz_weights
@@ -27,6 +29,9 @@ from skybake.sky.sky import WAVELENGTHS, Sky
 from skybake.sky.spectral_table import radiance_at_nodes
 from skybake.sky.table import FoldedTable
 
+if TYPE_CHECKING:
+    from skybake.clouds.cloudscape import Cloudscape
+
 SURVEY_ROWS = 256
 """Rows of an equirect map by which the light of a scene is judged."""
 
@@ -42,6 +47,7 @@ UNDERSHOOT = 0.01
 
 PROBE_ZENITHS = 192
 PROBE_AZIMUTHS = 256
+CLOUDY_PROBE_AZIMUTHS = 128
 CELLS_AT_ONCE = 32768
 
 _LAYERS = {"include": ("sky", "sun"), "exclude": ("sky",), "only": ("sun",)}
@@ -149,7 +155,23 @@ class Scene:
         """The sky as a table of pixel values."""
         return self._surveyed[0]
 
-    @property
+    @cached_property
+    def cloudscape(self) -> Cloudscape | None:
+        """The world's clouds over the observer, or None where there are none."""
+        if not self.planet.clouds:
+            return None
+        from skybake.clouds.build import build_cloudscape
+
+        return build_cloudscape(
+            self.planet.clouds,
+            self.sky,
+            self.xyz_weights / self.settings.encoding.white_luminance,
+            time=self.settings.clouds.time,
+            quality=self.settings.clouds.quality,
+            workers=self.workers,
+        )
+
+    @cached_property
     def survey(self) -> np.ndarray:
         """Pixel values of a small equirect map of the sky, shape (SURVEY_ROWS, column, 3).
 
@@ -158,7 +180,13 @@ class Scene:
         UnsolvableError
             If its luminance is negative beyond rounding, or not finite.
         """
-        return self._surveyed[1]
+        if self.cloudscape is None:
+            return self._surveyed[1]
+        rows = SURVEY_ROWS // 2
+        coarse = self.evaluate(
+            row_zeniths(rows)[:, None], column_bearings(2 * rows)[None], math.pi / rows
+        )
+        return np.repeat(np.repeat(coarse, 2, axis=0), 2, axis=1)
 
     @cached_property
     def _surveyed(self) -> tuple[FoldedTable, np.ndarray]:
@@ -230,12 +258,17 @@ class Scene:
                 cells.azimuth[part] + self.settings.view.rotation,
             )
             flux[part] = (light @ self.rgb_weights) * cells.solid_angle[part, None]
+            if self.cloudscape is not None:
+                bearing = cells.azimuth[part] + self.settings.view.rotation
+                flux[part] *= self.cloudscape.transmittance(cells.zenith[part], bearing)[:, None]
         return self.settings.lighting.sun_strength * flux
 
     def sun_xyz(self) -> tuple[Array, Array]:
         """XYZ by the sun's disc, on a plane that faces it and on the horizontal. [lx]"""
         normal, horizontal = self.sun.irradiance_per_irradiance()
         weights = self.settings.lighting.sun_strength * self.xyz_weights
+        if self.cloudscape is not None:
+            weights = weights * self.cloudscape.sun_transmittance()
         return normal @ weights, horizontal @ weights
 
     def sun_illuminance(self) -> tuple[float, float]:
@@ -260,7 +293,11 @@ class Scene:
     def _sky_by_zenith(self) -> Array:
         """Mean pixel values around the sky at the zenith angles of a probe, (zenith, 3)."""
         zenith, _ = _probe_zeniths()
-        azimuth = math.pi * (np.arange(PROBE_AZIMUTHS) + 0.5) / PROBE_AZIMUTHS
+        # Without clouds both sides of the sun are alike.
+        count, around = PROBE_AZIMUTHS, math.pi
+        if self.cloudscape is not None:
+            count, around = CLOUDY_PROBE_AZIMUTHS, 2.0 * math.pi
+        azimuth = around * (np.arange(count) + 0.5) / count
         pixels = self.evaluate(zenith[:, None], azimuth[None], 1e-9)
         mean: Array = pixels.astype(float).mean(axis=1)
         return mean
@@ -278,7 +315,27 @@ class Scene:
         # The least value is found 50 times as fast as luminances are.
         if pixels.min(initial=0.0) < 0.0 or weights.min() < 0.0:
             pixels[pixels @ weights < 0.0] = 0.0
+        if self.cloudscape is not None:
+            return self._with_clouds(pixels, zenith, azimuth, footprint)
         return pixels
+
+    def _with_clouds(
+        self, pixels: np.ndarray, zenith: Array, azimuth: Array, footprint: Array | float
+    ) -> np.ndarray:
+        """Put clouds into pixels, in XYZ: of these none is negative, as ratios of light need."""
+        assert self.cloudscape is not None
+        to_rgb = rgb_from_xyz(self.settings.encoding.space)
+        xyz = pixels.reshape(-1, 3) @ np.linalg.inv(to_rgb).T.astype(np.float32)
+        shape = pixels.shape[:2]
+        bearing = np.broadcast_to(azimuth + self.settings.lighting.sun_azimuth, shape).ravel()
+        light, _ = self.cloudscape.put_into(
+            xyz,
+            np.broadcast_to(zenith, shape).ravel(),
+            bearing,
+            0.5 * float(np.median(footprint)),
+        )
+        cloudy: np.ndarray = (light @ to_rgb.T.astype(np.float32)).reshape(pixels.shape)
+        return cloudy
 
     def _evaluate(
         self, table: FoldedTable, zenith: Array, azimuth: Array, footprint: Array | float
