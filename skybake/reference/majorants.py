@@ -48,9 +48,9 @@ def bound_clouds(field: CloudField) -> CloudBounds:
     """Bound a layer's extinction from above."""
     most, base = _most_in_voxels(field), float(field.base)
     if field.kind == LINEAR:
-        # The outermost planes of voxels fade out beyond their own faces.
+        # The outermost planes of voxels fade out beyond their faces, half a voxel of it in `base`.
         most = _dilate(np.pad(most, ((1, 1), (0, 0), (0, 0))))
-        base -= float(field.spacing[0])
+        base -= 0.5 * float(field.spacing[0])
     steps = [_voxels_per_cell(n, size) for n, size in zip(most.shape, field.spacing, strict=True)]
     # A last cell in z may reach beyond the voxels: rows and columns have to divide evenly.
     steps[0] = max(1, round(CELL / field.spacing[0]))

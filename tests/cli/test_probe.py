@@ -69,6 +69,14 @@ def test_a_blue_sky_is_blue(views):
     assert 500.0 < float(rows[0]["luminance_cd_m2"]) < 10_000.0
 
 
+def test_a_clear_sky_is_the_same_from_every_bearing_of_the_sun(views):
+    south, east = (
+        invoke("probe", *HILLAIRE, *FEW, "--directions", views, *azimuth).stdout
+        for azimuth in ((), ("--sun-azimuth", "90deg"))
+    )
+    assert south == east
+
+
 def test_standard_input_and_a_file_give_the_same(views, tmp_path):
     target = tmp_path / "out.csv"
     with views.open() as stdin:
@@ -156,6 +164,8 @@ def test_faulty_directions_are_one_line_with_their_place(text, message, tmp_path
         (2, ("--wavelengths", "-550"), "must be wavelengths in nm such as 680,550,440, got '-550'"),
         (2, ("--wavelengths", "nan"), "must be wavelengths in nm such as 680,550,440, got 'nan'"),
         (2, ("--sun", "nan"), "must be an angle such as 5deg"),
+        (2, ("--sun-azimuth", "south"), "must be an angle"),
+        (2, ("--time", "2026-06-21T12:00Z", "--sun-azimuth", "0deg"), "cannot be combined with"),
         (2, ("--altitude", "-1m"), "must be at least 0m"),
         (2, ("--samples", "0"), "--samples"),
     ],

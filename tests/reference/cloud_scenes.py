@@ -32,7 +32,7 @@ def voxels(
         spacing=np.array(spacing),
         period=np.array([spacing[2], spacing[1]]) * extinction.shape[:0:-1],
         origin=np.array(origin),
-        base=base,
+        base=base - beyond,
         top=base + len(extinction) * spacing[0] + beyond,
     )
 

@@ -236,8 +236,9 @@ def bound_and_extinctions(field, bounds, radius, place, offsets, out):
     return most
 
 
-@pytest.mark.parametrize("field", [cumulus(), linear_cumulus(), preset_cumulus()])
-def test_extinction_is_nowhere_above_its_bound(field):
+@pytest.mark.parametrize("clouds", [cumulus, linear_cumulus, preset_cumulus])
+def test_extinction_is_nowhere_above_its_bound(clouds):
+    field = clouds()
     random = np.random.default_rng(1)
     bounds = bound_clouds(field)
     offsets = random.normal(size=(200, 3))
