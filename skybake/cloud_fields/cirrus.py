@@ -41,7 +41,7 @@ def cirrus(
     along = _STRETCH * across
     extent = (_ROWS * across, _COLUMNS * along)
     rise = dyadic(depth / (_LEVELS - 3))
-    density = _trails(extent, (across, along), depth, size, cover, seed)
+    density = _trails(extent, (across, along), size, cover, seed)
     # Where there is none the surface is so far that no blur reaches it.
     nodes = (_WIDTH * (0.5 - density)).astype(np.float32)
     surface = Surface(
@@ -63,7 +63,6 @@ def cirrus(
 def _trails(
     extent: tuple[float, float],
     spacing: tuple[float, float],
-    depth: float,
     size: float,
     cover: float,
     seed: int,
@@ -77,7 +76,7 @@ def _trails(
     source = np.fft.rfft2(np.maximum(heads + 0.8 * (cover - 0.5), 0.0) ** 1.5 * envelope)
     kx = 2.0 * np.pi * np.fft.rfftfreq(_COLUMNS, along)
     ky = 2.0 * np.pi * np.fft.fftfreq(_ROWS, across)[:, None]
-    wander = 0.3 * size * random_map(shape, extent, -3.0, (0.3 * size, 2.0 * size), (seed, 14))
+    wander = 0.25 * size * random_map(shape, extent, -3.0, (0.8 * size, 4.0 * size), (seed, 14))
     rows = np.arange(_ROWS)[:, None] + wander / across
     density = np.zeros((_LEVELS, *shape))
     for level in range(1, _LEVELS - 1):

@@ -65,7 +65,9 @@ def cumulus(
         widest_edge=0.2 * size,
         condensation=base,
         displacement=displacements(
-            (period, period), [(0.075 * size, 0.62 * size), (0.02 * size, 0.14 * size), (0.005 * size, 0.036 * size)], seed
+            (period, period),
+            [(0.075 * size, 0.62 * size), (0.02 * size, 0.14 * size), (0.005 * size, 0.036 * size)],
+            seed,
         ),
         noise=billows(seed),
     )
@@ -110,18 +112,18 @@ def _stamp_bubbles(nodes, centres, radii, spacing, rise, lowest, margin, first, 
         radius = radii[b]
         reach = radius + margin
         blend = 0.15 * radius
-        k0 = max(first, int(math.ceil((z - reach) / rise)))
-        k1 = min(last, int(math.floor((z + reach) / rise)) + 1)
+        k0 = max(first, math.ceil((z - reach) / rise))
+        k1 = min(last, math.floor((z + reach) / rise) + 1)
         for k in range(k0, k1):
             dz = k * rise - z
             half = math.sqrt(max(reach * reach - dz * dz, 0.0))
-            j0, j1 = int(math.ceil((y - half) / spacing)), int(math.floor((y + half) / spacing))
+            j0, j1 = math.ceil((y - half) / spacing), math.floor((y + half) / spacing)
             for j in range(j0, j1 + 1):
                 dy = j * spacing - y
                 flat = dz * dz + dy * dy
                 wide = math.sqrt(max(reach * reach - flat, 0.0))
-                i0 = int(math.ceil((x - wide) / spacing))
-                i1 = int(math.floor((x + wide) / spacing))
+                i0 = math.ceil((x - wide) / spacing)
+                i1 = math.floor((x + wide) / spacing)
                 row = nodes[k, j % rows]
                 column = i0 % columns
                 for i in range(i0, i1 + 1):
@@ -161,7 +163,7 @@ def _smooth(volume, x, y, z):
 def _lookup(volume, x, y, z):
     """Trilinear value at coordinates in nodes, periodic in x and y."""
     levels, rows, columns = volume.shape
-    k, j, i = int(math.floor(z)), int(math.floor(y)), int(math.floor(x))
+    k, j, i = math.floor(z), math.floor(y), math.floor(x)
     u, v, w = x - i, y - j, z - k
     i, j, k = i % columns, j % rows, k % levels
     east, north, up = (i + 1) % columns, (j + 1) % rows, (k + 1) % levels

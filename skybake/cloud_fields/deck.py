@@ -175,7 +175,7 @@ def _seam_distances(seams, points, away_y, away_x, period):
         for a in range(size):
             y = (b / size + away_y[b, a] / period) * rows
             x = (a / size + away_x[b, a] / period) * columns
-            j0, i0 = int(math.floor(y)), int(math.floor(x))
+            j0, i0 = math.floor(y), math.floor(x)
             nearest = second = 1e9
             for j in range(j0 - 2, j0 + 3):
                 for i in range(i0 - 2, i0 + 3):

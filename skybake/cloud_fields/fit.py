@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from skybake.cloud_fields.clearance import block_clearance
+from skybake.cloud_fields.clearance import block_clearance, blocks_of
 from skybake.cloud_fields.field import SURFACE, CloudField
 from skybake.cloud_fields.surface import STEP, surface_extinction
 from skybake.jit.kernel import kernel
@@ -211,21 +211,6 @@ def _with_clearance(field: CloudField) -> CloudField:
     cloudy &= (heights > bottom)[:, None, None]
     mask, block = blocks_of(cloudy, field.spacing, _NODES_PER_BLOCK)
     return field._replace(clearance=block_clearance(mask, block), block=block)
-
-
-def blocks_of(
-    cells: npt.NDArray[np.bool_], spacing: npt.NDArray[np.float64], cells_per_block: tuple[int, ...]
-) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.float64]]:
-    """Return which blocks hold a cell that is set, and the blocks' size. [km]"""
-    block = np.empty(3)
-    for axis, (size, step) in enumerate(zip(cells.shape, cells_per_block, strict=True)):
-        count = max(1, round(size / step))
-        edges = [(b * size / count, (b + 1) * size / count) for b in range(count)]
-        slices = [slice(int(first), int(np.ceil(last - 1e-9))) for first, last in edges]
-        taken = np.moveaxis(cells, axis, 0)
-        cells = np.moveaxis(np.stack([taken[each].any(0) for each in slices]), 0, axis)
-        block[axis] = spacing[axis] * size / count
-    return cells, block
 
 
 def _steepness(nodes: npt.NDArray[np.float32], spacing: npt.NDArray[np.float64]) -> float:

@@ -94,7 +94,7 @@ def _shaped(
     amplitude *= np.exp(-((waves * shortest) ** 2)) / np.sqrt(1.0 + (waves * longest) ** -4.0)
     amplitude.flat[0] = 0.0
     white = np.random.default_rng(seed).standard_normal(shape)
-    values = np.fft.irfftn(np.fft.rfftn(white) * amplitude, shape)
+    values = np.fft.irfftn(np.fft.rfftn(white) * amplitude, shape, tuple(range(len(shape))))
     return np.asarray((values - values.mean()) / values.std(), np.float64)
 
 
