@@ -155,8 +155,19 @@ def _warp(nodes, flow, period, spacing, rise, amplitude, warped, first, last):
 
 @kernel
 def _smooth(volume, x, y, z):
-    """Trilinear value of a volume that is periodic along all axes."""
-    return _lookup(volume, x, y, z - math.floor(z / volume.shape[0]) * volume.shape[0])
+    """Trilinear value of a volume that is periodic along all axes, at 0 or more."""
+    mask = _WARP_SIZE - 1
+    k, j, i = int(z), int(y), int(x)
+    u, v, w = x - i, y - j, z - k
+    i, j, k = i & mask, j & mask, k & mask
+    east, north, up = (i + 1) & mask, (j + 1) & mask, (k + 1) & mask
+    a = volume[k, j, i] + u * (volume[k, j, east] - volume[k, j, i])
+    b = volume[k, north, i] + u * (volume[k, north, east] - volume[k, north, i])
+    c = volume[up, j, i] + u * (volume[up, j, east] - volume[up, j, i])
+    d = volume[up, north, i] + u * (volume[up, north, east] - volume[up, north, i])
+    a += v * (b - a)
+    c += v * (d - c)
+    return a + w * (c - a)
 
 
 @kernel
@@ -165,8 +176,9 @@ def _lookup(volume, x, y, z):
     levels, rows, columns = volume.shape
     k, j, i = math.floor(z), math.floor(y), math.floor(x)
     u, v, w = x - i, y - j, z - k
-    i, j, k = i % columns, j % rows, k % levels
-    east, north, up = (i + 1) % columns, (j + 1) % rows, (k + 1) % levels
+    i, j = i % columns, j % rows
+    east, north = (i + 1) % columns, (j + 1) % rows
+    up = min(k + 1, levels - 1)
     a = volume[k, j, i] + u * (volume[k, j, east] - volume[k, j, i])
     b = volume[k, north, i] + u * (volume[k, north, east] - volume[k, north, i])
     c = volume[up, j, i] + u * (volume[up, j, east] - volume[up, j, i])
