@@ -60,7 +60,7 @@ def gases_line() -> str:
 
 
 def clouds_table() -> str:
-    """What kinds of clouds are like unless a preset says otherwise."""
+    """Kinds of clouds, as they are unless a preset says otherwise."""
     head = ("kind", *(f"`{key}`" for key in _CLOUD_KEYS), "wind [m/s]")
     return _table(
         head,

@@ -20,8 +20,13 @@ INDEX = (
 )
 
 # Of a size parameter near the most frequent ones: coarser steps leave fringes of single droplets.
-STEP = 0.5
+STEP = 0.25
 SMALLEST, LARGEST = 0.1, 3.2
+
+# Between corona and cloudbow, where the phase function is smooth over several degrees, what is left
+# of narrow resonances is noise of some percent. [deg], [node]
+SMOOTH = (10.0, 20.0, 118.0, 128.0)
+SMOOTHING = 4.0
 
 
 def angles():
@@ -38,7 +43,17 @@ def droplets(effective_radius, wavelength):
     number = gamma_distribution(effective_radius, EFFECTIVE_VARIANCE, radius)
     index = complex(np.interp(wavelength, INDEX_WAVELENGTHS, INDEX), 0.0)
     _, _, phase = scatter(radius, number, index, wavelength, angles())
-    return phase
+    return without_resonances(phase)
+
+
+def without_resonances(phase):
+    """Average the logarithm over neighbouring nodes where it is smooth."""
+    offsets = np.arange(-16, 17)
+    weights = np.exp(-0.5 * (offsets / SMOOTHING) ** 2)
+    padded = np.pad(np.log(phase), 16, mode="edge")
+    averaged = np.convolve(padded, weights / weights.sum(), mode="valid")
+    share = np.interp(angles(), (0.0, *SMOOTH, 180.0), (0.0, 0.0, 1.0, 1.0, 0.0, 0.0))
+    return np.exp(share * averaged + (1.0 - share) * np.log(phase))
 
 
 def main():

@@ -13,7 +13,7 @@ from skybake.errors import InputError
 from skybake.formats.whole_files import replace_when_whole
 from skybake.optics.medium import Medium, altitude_nodes, build_medium
 from skybake.optics.phase import scattering_angles
-from skybake.preset import Planet
+from skybake.preset import CloudLayer, Planet
 from skybake.sky.sky import WAVELENGTHS
 
 SAMPLES = 171
@@ -52,6 +52,7 @@ def plot_planet(planet: Planet, path: Path) -> None:
     _plot_phases(phases, medium, wavelengths, colours)
     for colour, one in zip(colours, planet.constituents, strict=True):
         profiles.plot([], [], color=colour, label=one.name)
+    _plot_clouds(profiles, planet.clouds)
     profiles.legend()
     with replace_when_whole(path) as temporary:
         figure.savefig(temporary, dpi=120)
@@ -86,6 +87,14 @@ def _plot_profiles(axes: Axes, medium: Medium, colours: list[str]) -> None:
         xlabel="density relative to the greatest",
         ylabel="altitude [km]",
     )
+
+
+def _plot_clouds(axes: Axes, layers: tuple[CloudLayer, ...]) -> None:
+    for i, layer in enumerate(layers):
+        top = layer.base + layer.depth
+        shade = 0.55 + 0.3 * (i % 2)
+        axes.axhspan(layer.base, top, color=f"{shade:g}", alpha=0.5, label=f"clouds {layer.name}")
+        axes.set_ylim(top=max(top, axes.get_ylim()[1]))
 
 
 def _plot_phases(axes: Axes, medium: Medium, wavelengths: np.ndarray, colours: list[str]) -> None:

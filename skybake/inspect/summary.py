@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -19,8 +20,9 @@ from skybake.optics.medium import (
     vertical_columns,
     vertical_optical_depth,
 )
+from skybake.optics.phase import build_phase
 from skybake.optics.spectrum import limb_darkening, star_irradiance, star_spectrum
-from skybake.preset import Absorber, Gas, Planet
+from skybake.preset import Absorber, CloudLayer, Gas, Planet
 from skybake.scattering.grid import ORDER
 from skybake.scattering.limits import check_medium
 from skybake.sky.sky import WAVELENGTHS
@@ -129,6 +131,7 @@ def _try_all(planet: Planet) -> Medium:
         star_irradiance(planet.star, wavelengths),
         limb_darkening(planet.star, wavelengths),
     ]
+    arrays += [build_phase(layer.phase, wavelengths) for layer in planet.clouds]
     if not all(np.isfinite(array).all() for array in arrays):
         raise PresetError(f"{planet.name}: optics must be finite numbers")
     return medium
@@ -147,6 +150,16 @@ def _column(constituent: object, length: float) -> float | None:
     if isinstance(constituent, Gas):
         return constituent.pressure / (BOLTZMANN * constituent.temperature) * length * 1e3
     return constituent.column if isinstance(constituent, Absorber) else None
+
+
+def _cloud_line(layer: CloudLayer) -> str:
+    reach = f"clouds {layer.name}: {layer.base:g} to {layer.base + layer.depth:g} km"
+    if layer.tile is not None:
+        return f"{reach}, voxels of {Path(layer.tile.path).name}, {layer.tile.interpolation}"
+    return (
+        f"{reach}, {layer.kind}, cover {layer.cover:.4g}, "
+        f"optical depth {layer.optical_depth:.4g} at 550 nm"
+    )
 
 
 def summary_text(planet: Planet, summary: Summary) -> str:
@@ -173,6 +186,7 @@ def summary_text(planet: Planet, summary: Summary) -> str:
         for one in summary.constituents
         if one.column is not None
     ]
+    lines += [_cloud_line(layer) for layer in planet.clouds]
     if summary.visibility is not None:
         is_clear = math.isinf(summary.visibility)
         length = "without limit" if is_clear else f"{summary.visibility:.4g} km"

@@ -34,13 +34,13 @@ MAX_LAYERS = 8
 INTERPOLATIONS = ("linear", "constant")
 
 
-def read_clouds(top: Section, highest: Top | None) -> tuple[CloudLayer, ...]:
-    """Read ``[clouds.NAME]`` of a whole preset; none if there is no such table.
+def read_clouds(section: Section, highest: Top | None) -> tuple[CloudLayer, ...]:
+    """Read ``[clouds]``.
 
     Parameters
     ----------
-    top : Section
-        The preset.
+    section : Section
+        A table of layers by their names.
     highest : Top or None
         Top of the atmosphere; None if that is faulty itself.
 
@@ -54,9 +54,6 @@ def read_clouds(top: Section, highest: Top | None) -> tuple[CloudLayer, ...]:
     PresetWarning
         If layers overlap.
     """
-    if not top.has("clouds"):
-        return ()
-    section = top.section("clouds")
     names = section.keys()
     if len(names) > MAX_LAYERS:
         section.fail("", f"must be at most {MAX_LAYERS} layers, got {len(names)}")

@@ -179,7 +179,9 @@ class Document:
 
 def _merges(name: str, old: dict[str, Any], new: dict[str, Any]) -> bool:
     is_same = "kind" not in new or new["kind"] == old.get("kind")
-    return name not in _WHOLE and is_same and ("tile" not in new or "tile" in old)
+    # A layer of clouds may have the name of the key.
+    is_tile = "tile" in new and not isinstance(new["tile"], dict)
+    return name not in _WHOLE and is_same and (not is_tile or "tile" in old)
 
 
 def _leaves(table: dict[str, Any], at: Key) -> list[tuple[Key, Any]]:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from skybake.constants import ASTRONOMICAL_UNIT
-from skybake.preset.clouds import read_clouds
+from skybake.preset.clouds_model import CloudLayer
 from skybake.preset.constituents import Top, read_constituent
 from skybake.preset.document import Document
 from skybake.preset.extend import NAME, Overrides, load_document
@@ -93,7 +93,7 @@ def planet_from_document(document: Document, *, name: str) -> Planet:
     star = read(_read_star, top)
     ground = read(_read_ground, top)
     constituents = read(_read_constituents, top, highest)
-    clouds = read(read_clouds, top, highest)
+    clouds = read(_read_clouds, top, highest)
     read.finish()
     return Planet(
         name=name,
@@ -180,6 +180,14 @@ def _read_constituents(top: Section, highest: Top | None) -> tuple[Constituent, 
     constituents = tuple(read(_read_one, section, name, highest) for name in names)
     read.finish()
     return constituents
+
+
+def _read_clouds(top: Section, highest: Top | None) -> tuple[CloudLayer, ...]:
+    if not top.has("clouds"):
+        return ()
+    from skybake.preset.clouds import read_clouds
+
+    return read_clouds(top.section("clouds"), highest)
 
 
 def _read_one(section: Section, name: str, highest: Top | None) -> Constituent:

@@ -71,7 +71,7 @@ extends = {toml_value(file)}
 title = {toml_value(f"{name}, after {base}")}
 
 {toml_text(body, _comment)}
-# constituents.NAME = {{ ... }} adds one, see docs/presets.md.
+# constituents.NAME = {{ ... }} adds one, and so does clouds.NAME, see docs/presets.md.
 """
 
 

@@ -17,6 +17,8 @@ PATHS = ["a.exr", "a.hdr", "a.png", "no/such/a.exr", ".", "a b.exr", "ü.exr", f
 EXAMPLES = {
     "preset": ["earth", "mars", "earth-hillaire2020", "own.toml", "nowhere", "a/b.toml"],
     "changes": ["ozone.column_du=250", "ground.albedo=snow", "aerosol=none", "a.b=[1, 2", "x", "="],
+    "clouds": ["none", "cumulus:1.4", "fog", "cirrus,base=1", "tile=no.npz,base=1km", "=", ","],
+    "cloud_time": ["0s", "3min", "-1s", "0s..1h"],
     "visibility": ["20km", "1m", "1e9km"],
     "turbidity": ["3", "1", "0.5"],
     "ozone": ["320DU", "0", "-1DU"],

@@ -240,6 +240,17 @@ def test_a_preset_is_drawn(tmp_path, name):
     assert max(stats.stddev[:3]) > 0.05
 
 
+def test_layers_of_clouds_are_drawn(tmp_path):
+    """As bands with their names, which an SVG holds as comments."""
+    path = tmp_path / "clouds.svg"
+    layers = ("--clouds", "cumulus:0.4", "--clouds", "cirrus,base=90km")
+    assert invoke("presets", "plot", "earth", *layers, "-o", path).exit_code == 0
+    text = path.read_text("utf-8")
+    assert "<!-- clouds cumulus -->" in text
+    assert "<!-- clouds cirrus -->" in text
+    assert "<!-- 80 -->" in text
+
+
 WITHOUT = """
 import sys
 sys.modules["matplotlib"] = None

@@ -114,3 +114,11 @@ def test_a_table_with_a_peak_beyond_truncation_is_told_to_be_no_rendering(tmp_pa
     refusal = summarise(planet).refusal
     assert "forward peak of a phase function" in refusal
     assert f"will not render: {refusal}" in summary_text(planet, summarise(planet))
+
+
+def test_layers_of_clouds_are_listed_and_change_no_other_figure():
+    cloudy, clear = load_preset("earth-fair"), load_preset("earth")
+    cloudy_lines = summary_text(cloudy, summarise(cloudy)).splitlines()[1:]
+    clear_lines = summary_text(clear, summarise(clear)).splitlines()[1:]
+    layer = "clouds low: 1.2 to 2.1 km, cumulus, cover 0.4, optical depth 25 at 550 nm"
+    assert [line for line in cloudy_lines if line not in clear_lines] == [layer]

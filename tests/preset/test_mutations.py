@@ -18,12 +18,37 @@ from skybake.preset.toml import toml_text
 from skybake.sky.sky import WAVELENGTHS
 from tests.preset.files import MINIMAL
 
-BASES = [tomllib.loads(text) for text in (MINIMAL, *map(preset_text, ("earth", "mars")))]
+CLOUDS = """
+[clouds.low]
+kind = "cumulus"
+base_km = 1.2
+depth_km = 0.9
+cover = 0.4
+liquid_water_path_g_m2 = 120.0
+effective_radius_um = 8.0
+wind_m_s = [6.0, 250.0]
+[clouds.high]
+kind = "cirrus"
+base_km = 8.0
+optical_depth = 0.3
+phase = { kind = "henyey-greenstein", asymmetry = 0.8 }
+"""
+TEXTS = (MINIMAL, MINIMAL + CLOUDS, *map(preset_text, ("earth", "mars")))
+BASES = [tomllib.loads(text) for text in TEXTS]
 NUMBERS = st.sampled_from(
     [0, -1, 1, 1e-300, 1e-9, 0.5, 0.99, 1.0, 2.0, 99.0, 550.0, 1e3, 1e6, 1e9, 1e300, 2**70]
 ) | st.floats(width=64)
 WORDS = st.sampled_from(
-    ["none", "earth", "dry_air", "afgl_us_standard", "ozone_233k", "mars_dust_phase", "a.csv"]
+    [
+        "none",
+        "earth",
+        "dry_air",
+        "afgl_us_standard",
+        "ozone_233k",
+        "mars_dust_phase",
+        "a.csv",
+        "3/8",
+    ]
 ) | st.sampled_from(["exponential", "tent", "tabulated", "cornette-shanks", "rgb", "gas", "", "/"])
 FACTORS = st.sampled_from([0.0, 1e-12, 1e-3, 0.3, 0.5, 0.9, 1.01, 1.1, 2.0, 3.0, 1e3, 1e12, -1.0])
 ACTIONS = st.sampled_from(["scale"] * 7 + ["change", "drop", "misspell"])
@@ -88,7 +113,13 @@ def test_a_mutated_preset_is_refused_in_lines_or_makes_a_finite_medium(tmp_path_
                 assert len(line.splitlines()) == 1
                 assert line.strip()
             return
-    for array in (*medium[2:], *star):
+    layers = [
+        np.array([one.base, one.depth, one.size, one.cover, one.optical_depth, one.wind_from])
+        for one in planet.clouds
+    ]
+    for array in layers:
+        assert (array >= 0.0).all()
+    for array in (*medium[2:], *star, *layers):
         assert np.isfinite(array).all()
     for array in medium[2:]:
         assert (array >= 0.0).all()
