@@ -7,24 +7,29 @@ from skybake.jit.kernel import kernel
 
 
 @kernel
-def _fill(field, points, blur, extinction, clearance):
+def _fill_extinction(field, points, blur, values):
     for n in range(points.shape[0]):
-        x, y, altitude = points[n, 0], points[n, 1], points[n, 2]
-        extinction[n] = extinction_at(field, x, y, altitude, blur)
-        clearance[n] = clearance_at(field, x, y, altitude, blur)
+        values[n] = extinction_at(field, points[n, 0], points[n, 1], points[n, 2], blur)
 
 
-def sample(field, points, blur=0.0):
-    """Extinction and clearance at points of the tile, shape (point, 3) as x, y, altitude."""
-    points = np.ascontiguousarray(points, np.float64)
-    extinction, clearance = np.empty(len(points)), np.empty(len(points))
-    _fill(field, points, blur, extinction, clearance)
-    return extinction, clearance
+@kernel
+def _fill_clearance(field, points, blur, values):
+    for n in range(points.shape[0]):
+        values[n] = clearance_at(field, points[n, 0], points[n, 1], points[n, 2], blur)
 
 
 def extinction(field, points, blur=0.0):
-    """Extinction alone."""
-    return sample(field, points, blur)[0]
+    """Extinction at points of the tile, shape (point, 3) as x, y, altitude."""
+    values = np.empty(len(points))
+    _fill_extinction(field, np.ascontiguousarray(points, np.float64), blur, values)
+    return values
+
+
+def clearance(field, points, blur=0.0):
+    """Clearance at such points."""
+    values = np.empty(len(points))
+    _fill_clearance(field, np.ascontiguousarray(points, np.float64), blur, values)
+    return values
 
 
 def random_points(field, count, seed=1):
@@ -35,7 +40,7 @@ def random_points(field, count, seed=1):
     return low + unit * [*field.period, 1.2 * height]
 
 
-def column_depths(field, count, levels=200):
+def column_depths(field, count, levels=70):
     """Vertical optical depths of a square of columns, by another rule than the engine's."""
     x, y = ((np.arange(count) + 0.5) / count * period for period in field.period)
     step = (field.top - field.base) / levels
