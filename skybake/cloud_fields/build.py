@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import functools
 import math
+from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 
 from skybake.cloud_fields.cirrus import cirrus
 from skybake.cloud_fields.cumulus import cumulus
 from skybake.cloud_fields.deck import ALTOCUMULUS, STRATOCUMULUS, STRATUS, deck
-from skybake.cloud_fields.field import CONSTANT, CloudField
-from skybake.preset.clouds_model import CloudLayer
+from skybake.cloud_fields.empty import empty_field
+from skybake.cloud_fields.field import CloudField
+from skybake.cloud_fields.kept import kept_field
+from skybake.cloud_fields.tiles import read_tile, tile_field
+from skybake.preset.clouds_model import CloudLayer, Tile
 
 EVOLUTION = 1800.0
 """Time after which the details of clouds are the same again. [s]"""
@@ -18,7 +24,16 @@ EVOLUTION = 1800.0
 _RISING = 6e-4
 """Speed of details relative to their cloud, about. [km s⁻¹]"""
 
-_DECKS = {"stratus": STRATUS, "stratocumulus": STRATOCUMULUS, "altocumulus": ALTOCUMULUS}
+_RECENT = 4
+"""Fields that a process holds for its next frame."""
+
+_SHAPES: dict[str, Callable[..., CloudField]] = {
+    "stratus": functools.partial(deck, STRATUS),
+    "stratocumulus": functools.partial(deck, STRATOCUMULUS),
+    "altocumulus": functools.partial(deck, ALTOCUMULUS),
+    "cumulus": cumulus,
+    "cirrus": cirrus,
+}
 
 
 def build_field(layer: CloudLayer, time_s: float = 0.0) -> CloudField:
@@ -40,40 +55,24 @@ def build_field(layer: CloudLayer, time_s: float = 0.0) -> CloudField:
     return _at_time(_still_field(layer), layer, time_s)
 
 
-def empty_field() -> CloudField:
-    """Return a field without clouds."""
-    return CloudField(
-        kind=CONSTANT,
-        values=np.zeros((1, 1, 1), np.float32),
-        distance=np.zeros((1, 1, 1), np.int16),
-        spacing=np.ones(3),
-        period=np.ones(2),
-        origin=np.zeros(2),
-        base=0.0,
-        top=0.0,
-        extinction=np.zeros(1),
-        edge=0.0,
-        widest_edge=0.0,
-        condensation=0.0,
-        shift=np.zeros(1),
-        largest_blur=0.0,
-        displacement=np.zeros((0, 9)),
-        noise=np.zeros((1, 1, 1), np.int8),
-        clearance=np.full((1, 1, 1), 1e3, np.float32),
-        block=np.ones(3),
-        steepness=1.0,
-    )
-
-
 def _still_field(layer: CloudLayer) -> CloudField:
+    if layer.tile is not None:
+        return _tile(layer.tile, layer.base)
     if layer.cover <= 0.0 or layer.optical_depth <= 0.0:
         return empty_field()
-    shape = layer.cover, layer.base, layer.depth, layer.size, layer.optical_depth, layer.seed
-    if layer.kind == "cumulus":
-        return cumulus(*shape)
-    if layer.kind == "cirrus":
-        return cirrus(*shape)
-    return deck(_DECKS[layer.kind], *shape)
+    size = layer.depth, layer.size
+    return _shaped(layer.kind, layer.cover, layer.base, *size, layer.optical_depth, layer.seed)
+
+
+@functools.lru_cache(_RECENT)
+def _shaped(kind: str, *shape: float) -> CloudField:
+    return kept_field(kind, shape, _SHAPES[kind])
+
+
+@functools.lru_cache(1)
+def _tile(tile: Tile, base: float) -> CloudField:
+    path = Path(tile.path)
+    return tile_field(read_tile(path, path.name), base, tile.interpolation, tile.origin)
 
 
 def _at_time(field: CloudField, layer: CloudLayer, time_s: float) -> CloudField:

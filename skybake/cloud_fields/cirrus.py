@@ -41,7 +41,7 @@ def cirrus(
     along = _STRETCH * across
     extent = (_ROWS * across, _COLUMNS * along)
     rise = dyadic(depth / (_LEVELS - 3))
-    density = _trails(extent, (across, along), depth, size, cover, seed)
+    density = _trails(extent, (across, along), size, cover, seed)
     # Where there is none the surface is so far that no blur reaches it.
     nodes = (_WIDTH * (0.5 - density)).astype(np.float32)
     surface = Surface(
@@ -53,7 +53,7 @@ def cirrus(
         widest_edge=_WIDTH,
         condensation=base - 10.0 * depth,
         displacement=displacements(
-            extent[::-1], [(0.03 * _WIDTH, 0.5 * size), (0.012 * _WIDTH, 0.12 * size)], seed
+            extent[::-1], [(0.012 * _WIDTH, 0.4 * size), (0.006 * _WIDTH, 0.1 * size)], seed
         ),
         noise=billows(seed),
     )
@@ -63,7 +63,6 @@ def cirrus(
 def _trails(
     extent: tuple[float, float],
     spacing: tuple[float, float],
-    depth: float,
     size: float,
     cover: float,
     seed: int,
@@ -71,21 +70,21 @@ def _trails(
     """Return relative densities; below 0 where there would have to be more cover for cloud."""
     across, along = spacing
     shape = (_ROWS, _COLUMNS)
-    heads = random_map(shape, extent, -1.2, (1.2 * across, 0.4 * size), (seed, 12))
+    heads = random_map(shape, extent, -1.4, (1.5 * across, 0.7 * size), (seed, 12))
     patches = random_map(shape, extent, -2.4, (0.25 * size, 0.3 * extent[1]), (seed, 13))
     envelope = 1.0 / (1.0 + np.exp(-2.5 * (patches - np.quantile(patches, 1.0 - cover))))
-    source = np.fft.rfft2(np.maximum(heads + 0.8 * (cover - 0.5), 0.0) ** 1.5 * envelope)
+    source = np.fft.rfft2(np.maximum(heads + 1.2 * (cover - 0.7), 0.0) ** 1.5 * envelope)
     kx = 2.0 * np.pi * np.fft.rfftfreq(_COLUMNS, along)
     ky = 2.0 * np.pi * np.fft.fftfreq(_ROWS, across)[:, None]
-    wander = 0.3 * size * random_map(shape, extent, -3.0, (0.3 * size, 2.0 * size), (seed, 14))
+    wander = 0.22 * size * random_map(shape, extent, -3.0, (1.2 * size, 5.0 * size), (seed, 14))
     rows = np.arange(_ROWS)[:, None] + wander / across
     density = np.zeros((_LEVELS, *shape))
     for level in range(1, _LEVELS - 1):
         fallen = 1.0 - (level - 1) / (_LEVELS - 3)
         # Crystals fall faster than they drift at first, and evaporate as they fall.
-        drift, smear = size * fallen**1.7, size * (0.05 + 0.4 * fallen)
+        drift, smear = 1.5 * size * fallen**1.7, size * (0.12 + 0.75 * fallen)
         moved = np.exp(-1j * kx * drift - 0.5 * (kx * smear) ** 2)
-        spread = np.exp(-0.5 * (ky * across * (0.5 + 1.2 * fallen)) ** 2)
+        spread = np.exp(-0.5 * (ky * across * (0.4 + 0.9 * fallen)) ** 2)
         trail = np.fft.irfft2(source * moved * spread, s=shape)
         trail *= math.exp(-1.3 * fallen) * (1.0 - fallen**4)
         density[level] = _along_rows(trail, rows)

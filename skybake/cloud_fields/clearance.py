@@ -36,6 +36,21 @@ def block_clearance(
     return np.minimum(np.sqrt(squared), farthest).astype(np.float32)
 
 
+def blocks_of(
+    cells: npt.NDArray[np.bool_], spacing: npt.NDArray[np.float64], cells_per_block: tuple[int, ...]
+) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.float64]]:
+    """Return which blocks hold a cell that is set, and the blocks' size. [km]"""
+    block = np.empty(3)
+    for axis, (size, step) in enumerate(zip(cells.shape, cells_per_block, strict=True)):
+        count = max(1, round(size / step))
+        edges = [(b * size / count, (b + 1) * size / count) for b in range(count)]
+        slices = [slice(int(first), int(np.ceil(last - 1e-9))) for first, last in edges]
+        taken = np.moveaxis(cells, axis, 0)
+        cells = np.moveaxis(np.stack([taken[each].any(0) for each in slices]), 0, axis)
+        block[axis] = spacing[axis] * size / count
+    return cells, block
+
+
 def _nearest_along(
     squared: npt.NDArray[np.float64], axis: int, size: float, *, is_periodic: bool
 ) -> npt.NDArray[np.float64]:
@@ -81,7 +96,7 @@ def surface_clearance(field, x, y, altitude, blur):
 @kernel
 def _outside(field, altitude):
     """Height above or below the layer, 0 within. [km]"""
-    return max(max(altitude - field.top, field.base - altitude), 0.0)
+    return max(altitude - field.top, field.base - altitude, 0.0)
 
 
 @kernel

@@ -65,7 +65,9 @@ def cumulus(
         widest_edge=0.2 * size,
         condensation=base,
         displacement=displacements(
-            (period, period), [(0.075 * size, 0.62 * size), (0.02 * size, 0.14 * size), (0.005 * size, 0.036 * size)], seed
+            (period, period),
+            [(0.075 * size, 0.62 * size), (0.02 * size, 0.14 * size), (0.005 * size, 0.036 * size)],
+            seed,
         ),
         noise=billows(seed),
     )
@@ -110,18 +112,18 @@ def _stamp_bubbles(nodes, centres, radii, spacing, rise, lowest, margin, first, 
         radius = radii[b]
         reach = radius + margin
         blend = 0.15 * radius
-        k0 = max(first, int(math.ceil((z - reach) / rise)))
-        k1 = min(last, int(math.floor((z + reach) / rise)) + 1)
+        k0 = max(first, math.ceil((z - reach) / rise))
+        k1 = min(last, math.floor((z + reach) / rise) + 1)
         for k in range(k0, k1):
             dz = k * rise - z
             half = math.sqrt(max(reach * reach - dz * dz, 0.0))
-            j0, j1 = int(math.ceil((y - half) / spacing)), int(math.floor((y + half) / spacing))
+            j0, j1 = math.ceil((y - half) / spacing), math.floor((y + half) / spacing)
             for j in range(j0, j1 + 1):
                 dy = j * spacing - y
                 flat = dz * dz + dy * dy
                 wide = math.sqrt(max(reach * reach - flat, 0.0))
-                i0 = int(math.ceil((x - wide) / spacing))
-                i1 = int(math.floor((x + wide) / spacing))
+                i0 = math.ceil((x - wide) / spacing)
+                i1 = math.floor((x + wide) / spacing)
                 row = nodes[k, j % rows]
                 column = i0 % columns
                 for i in range(i0, i1 + 1):
@@ -153,18 +155,30 @@ def _warp(nodes, flow, period, spacing, rise, amplitude, warped, first, last):
 
 @kernel
 def _smooth(volume, x, y, z):
-    """Trilinear value of a volume that is periodic along all axes."""
-    return _lookup(volume, x, y, z - math.floor(z / volume.shape[0]) * volume.shape[0])
+    """Trilinear value of a volume that is periodic along all axes, at 0 or more."""
+    mask = _WARP_SIZE - 1
+    k, j, i = int(z), int(y), int(x)
+    u, v, w = x - i, y - j, z - k
+    i, j, k = i & mask, j & mask, k & mask
+    east, north, up = (i + 1) & mask, (j + 1) & mask, (k + 1) & mask
+    a = volume[k, j, i] + u * (volume[k, j, east] - volume[k, j, i])
+    b = volume[k, north, i] + u * (volume[k, north, east] - volume[k, north, i])
+    c = volume[up, j, i] + u * (volume[up, j, east] - volume[up, j, i])
+    d = volume[up, north, i] + u * (volume[up, north, east] - volume[up, north, i])
+    a += v * (b - a)
+    c += v * (d - c)
+    return a + w * (c - a)
 
 
 @kernel
 def _lookup(volume, x, y, z):
     """Trilinear value at coordinates in nodes, periodic in x and y."""
     levels, rows, columns = volume.shape
-    k, j, i = int(math.floor(z)), int(math.floor(y)), int(math.floor(x))
+    k, j, i = math.floor(z), math.floor(y), math.floor(x)
     u, v, w = x - i, y - j, z - k
-    i, j, k = i % columns, j % rows, k % levels
-    east, north, up = (i + 1) % columns, (j + 1) % rows, (k + 1) % levels
+    i, j = i % columns, j % rows
+    east, north = (i + 1) % columns, (j + 1) % rows
+    up = min(k + 1, levels - 1)
     a = volume[k, j, i] + u * (volume[k, j, east] - volume[k, j, i])
     b = volume[k, north, i] + u * (volume[k, north, east] - volume[k, north, i])
     c = volume[up, j, i] + u * (volume[up, j, east] - volume[up, j, i])

@@ -58,7 +58,7 @@ STRATOCUMULUS = Deck(
     24.0, 0.62, 0.16, 0.25, 1.25, 0.34, 0.16, ((0.2, 0.5), (0.07, 0.13), (0.02, 0.035)), 0.1
 )
 ALTOCUMULUS = Deck(
-    14.0, 1.0, 0.2, 0.5, 1.5, 0.4, 0.1, ((0.3, 0.62), (0.1, 0.17), (0.03, 0.05)), 0.16
+    14.0, 1.0, 0.2, 0.32, 1.5, 0.4, 0.1, ((0.3, 0.62), (0.1, 0.17), (0.03, 0.05)), 0.16
 )
 
 
@@ -175,7 +175,7 @@ def _seam_distances(seams, points, away_y, away_x, period):
         for a in range(size):
             y = (b / size + away_y[b, a] / period) * rows
             x = (a / size + away_x[b, a] / period) * columns
-            j0, i0 = int(math.floor(y)), int(math.floor(x))
+            j0, i0 = math.floor(y), math.floor(x)
             nearest = second = 1e9
             for j in range(j0 - 2, j0 + 3):
                 for i in range(i0 - 2, i0 + 3):

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from skybake.cloud_fields.clearance import block_clearance
+from skybake.cloud_fields.clearance import block_clearance, blocks_of
 from skybake.cloud_fields.field import SURFACE, CloudField
 from skybake.cloud_fields.surface import STEP, surface_extinction
 from skybake.jit.kernel import kernel
@@ -17,12 +19,13 @@ LEAST_DEPTH = 0.2
 """Optical depth from which a column counts as covered, or this share of the mean if that is
 below 1."""
 
-_BLURS = 9
+_BLURS = 7
 # Prime, so that columns meet nodes and noise at every phase.
-_COLUMNS = 191
-_FEW_COLUMNS = 97
+_COLUMNS = 139
+_FEW_COLUMNS = 67
 _NODES_PER_BLOCK = (3, 6, 6)
-_HALVINGS = 14
+_TRIALS = 9
+_CLOSE = 5e-4
 
 
 class Surface(NamedTuple):
@@ -69,32 +72,42 @@ def fitted_field(
         not met. [km]
     """
     field = _unfitted(surface)
-    columns = np.empty((_COLUMNS, _COLUMNS), np.float32)
-    low, high = -farthest, farthest
-    for _ in range(_HALVINGS):
-        offset = 0.5 * (low + high)
-        relative = _column_depths(field, offset, columns)
-        if _cover(relative, _scale(relative, optical_depth), optical_depth) < cover:
-            low = offset
-        else:
-            high = offset
-    relative = _column_depths(field, high, columns)
+    depths = np.empty((_COLUMNS, _COLUMNS), np.float32)
+
+    def cover_at(offset: float) -> float:
+        _column_depths(field, offset, depths)
+        return _cover(depths, _scale(depths, optical_depth), optical_depth)
+
+    offset = _root(cover_at, cover, farthest)
+    relative = _column_depths(field, offset, depths)
     field = field._replace(
         extinction=field.extinction * _scale(relative, optical_depth),
-        shift=np.full(_BLURS, high),
+        shift=np.full(_BLURS, offset),
     )
     field = field._replace(shift=_mean_keeping_shifts(field))
     return _with_clearance(field)
 
 
-def column_cover(depths: npt.NDArray[np.float32], optical_depth: float) -> float:
-    """Return the share of columns that count as covered."""
-    return _cover(depths, 1.0, optical_depth)
+def _root(cover_at: Callable[[float], float], cover: float, farthest: float) -> float:
+    """Return the offset at which there is this cover, which grows with it.
 
-
-def measured_depths(field: CloudField, columns: int) -> npt.NDArray[np.float32]:
-    """Return the optical depths of vertical columns, in a square of them."""
-    return _column_depths(field, None, np.empty((columns, columns), np.float32))
+    It is the least that was found with full cover, where that is wanted.
+    """
+    low, high = -farthest, farthest
+    below, above = 0.0, 1.0
+    offset, found = 0.0, cover_at(0.0)
+    for _ in range(_TRIALS):
+        if cover < 1.0 and abs(found - cover) < _CLOSE:
+            return offset
+        if found < cover:
+            low, below = offset, found
+        else:
+            high, above = offset, found
+        # Between the ends where they are known, halfway where cover is saturated.
+        share = 0.5 if cover >= 1.0 else (cover - below) / max(above - below, 1e-9)
+        offset = low + min(max(share, 0.1), 0.9) * (high - low)
+        found = cover_at(offset)
+    return offset if cover < 1.0 else high
 
 
 def _unfitted(surface: Surface) -> CloudField:
@@ -121,18 +134,17 @@ def _unfitted(surface: Surface) -> CloudField:
         noise=surface.noise,
         clearance=np.zeros((1, 1, 1), np.float32),
         block=np.ones(3),
-        steepness=_steepness(surface.nodes, surface.spacing),
+        steepness=_steepness(distance, surface.spacing, 0, levels - 1),
     )
 
 
 def _column_depths(
-    field: CloudField, offset: float | None, depths: npt.NDArray[np.float32]
+    field: CloudField, offset: float, depths: npt.NDArray[np.float32]
 ) -> npt.NDArray[np.float32]:
-    if offset is not None:
-        field = field._replace(shift=np.full(_BLURS, offset))
+    moved = field._replace(shift=np.full(_BLURS, offset))
 
     def measure(first: int, last: int) -> None:
-        _measure_columns(field, 0.0, depths, first, last)
+        _measure_columns(moved, 0.0, depths, first, last)
 
     ALL_CPUS.run_rows(len(depths), measure, chunk=8)
     return depths
@@ -182,7 +194,7 @@ def _mean_keeping_shifts(field: CloudField) -> npt.NDArray[np.float64]:
         before, step = float(shifts[i - 1]), 0.25 * field.edge
         low = mean(blur, before) - wanted
         high = mean(blur, before + step) - wanted
-        for _ in range(3):
+        for _ in range(2):
             if high == low:
                 break
             after = before + step - high * step / (high - low)
@@ -213,31 +225,26 @@ def _with_clearance(field: CloudField) -> CloudField:
     return field._replace(clearance=block_clearance(mask, block), block=block)
 
 
-def blocks_of(
-    cells: npt.NDArray[np.bool_], spacing: npt.NDArray[np.float64], cells_per_block: tuple[int, ...]
-) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.float64]]:
-    """Return which blocks hold a cell that is set, and the blocks' size. [km]"""
-    block = np.empty(3)
-    for axis, (size, step) in enumerate(zip(cells.shape, cells_per_block, strict=True)):
-        count = max(1, round(size / step))
-        edges = [(b * size / count, (b + 1) * size / count) for b in range(count)]
-        slices = [slice(int(first), int(np.ceil(last - 1e-9))) for first, last in edges]
-        taken = np.moveaxis(cells, axis, 0)
-        cells = np.moveaxis(np.stack([taken[each].any(0) for each in slices]), 0, axis)
-        block[axis] = spacing[axis] * size / count
-    return cells, block
-
-
-def _steepness(nodes: npt.NDArray[np.float32], spacing: npt.NDArray[np.float64]) -> float:
-    """Return the largest gradient of values that are trilinear between nodes, at least 1."""
-    squared: npt.NDArray[np.float32] | float = 0.0
-    for axis in range(3):
-        slopes = np.abs(np.roll(nodes, -1, axis) - nodes) / np.float32(spacing[axis])
-        for other in range(3):
-            if other != axis:
-                slopes = np.maximum(slopes, np.roll(slopes, -1, other))
-        squared = squared + slopes[:-1] ** 2
-    return max(1.0, float(np.sqrt(np.max(squared))))
+@kernel
+def _steepness(distance, spacing, first, last):
+    """Largest gradient of values that are trilinear between planes, at least 1."""
+    _, rows, columns = distance.shape
+    dz, dy, dx = spacing[0] / STEP, spacing[1] / STEP, spacing[2] / STEP
+    largest = 1.0
+    for k in range(first, last):
+        for j in range(rows):
+            north = j + 1 if j + 1 < rows else 0
+            for i in range(columns):
+                east = i + 1 if i + 1 < columns else 0
+                a, b = float(distance[k, j, i]), float(distance[k, j, east])
+                c, d = float(distance[k, north, i]), float(distance[k, north, east])
+                e, f = float(distance[k + 1, j, i]), float(distance[k + 1, j, east])
+                g, h = float(distance[k + 1, north, i]), float(distance[k + 1, north, east])
+                x = max(abs(b - a), abs(d - c), abs(f - e), abs(h - g)) / dx
+                y = max(abs(c - a), abs(d - b), abs(g - e), abs(h - f)) / dy
+                z = max(abs(e - a), abs(f - b), abs(g - c), abs(h - d)) / dz
+                largest = max(largest, x * x + y * y + z * z)
+    return math.sqrt(largest)
 
 
 @kernel

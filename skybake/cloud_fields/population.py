@@ -130,7 +130,7 @@ def _towers(rng: np.random.Generator, cumuli: _Cumuli, size: float) -> Bubbles:
     step = np.arange(len(tower)) - np.repeat(np.cumsum(rises) - rises, rises)
     share = (step + 0.3) / rises[tower]
     # Towers narrow toward their top, where the youngest air is, and bulge in between.
-    r = radius[tower] * rng.uniform(0.7, 1.1, len(tower)) * (1.0 - 0.45 * share**1.5)
+    r = radius[tower] * rng.uniform(0.7, 1.1, len(tower)) * (1.3 - 0.75 * share**0.8)
     z = np.maximum(0.15 * r, np.minimum(share * top[tower], top[tower] - r))
     wander = rng.normal(0.0, 0.16, (len(tower), 2)) * radius[tower][:, None]
     centre = foot[tower] + lean[tower] * share[:, None] + wander

@@ -15,7 +15,7 @@ STEP = 2.0**-14
 _FADES = 4.0
 """Blurs in a period of a noise at which nothing of it is left."""
 
-_AT_BASE = 0.15
+_AT_BASE = 0.2
 """Share of its displacement that the base of clouds has, which is flat."""
 
 _SWIRL = 0.6

@@ -11,11 +11,11 @@ from skybake.jit.kernel import kernel
 def voxel_extinction(field, x, y, altitude):
     """Extinction of the voxel that holds a point. [km⁻¹]"""
     levels, rows, columns = field.values.shape
-    k = int(math.floor((altitude - field.base) / field.spacing[0]))
+    k = math.floor((altitude - field.base) / field.spacing[0])
     if k < 0 or k >= levels:
         return 0.0
-    j = int(math.floor(y / field.spacing[1])) % rows
-    i = int(math.floor(x / field.spacing[2])) % columns
+    j = math.floor(y / field.spacing[1]) % rows
+    i = math.floor(x / field.spacing[2]) % columns
     return float(field.values[k, j, i])
 
 
@@ -30,7 +30,7 @@ def linear_extinction(field, x, y, altitude):
     if fz <= -1.0 or fz >= levels:
         return 0.0
     fy, fx = y / field.spacing[1] - 0.5, x / field.spacing[2] - 0.5
-    k, j, i = int(math.floor(fz)), int(math.floor(fy)), int(math.floor(fx))
+    k, j, i = math.floor(fz), math.floor(fy), math.floor(fx)
     u, v, w = fx - i, fy - j, fz - k
     i, j = i % columns, j % rows
     east, north = (i + 1) % columns, (j + 1) % rows

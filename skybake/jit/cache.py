@@ -28,7 +28,8 @@ TABLES_FOLDER = "atmospheres"
 TABLES_SUFFIX = ".tables"
 
 KERNEL_SOURCES = (
-    "jit", "optics", "transport", "cloud_fields", "scattering", "reference", "sky", "formats/half.py",
+    "jit", "optics", "transport", "cloud_fields", "scattering", "reference", "sky",
+    "formats/half.py",
 )  # fmt: skip
 """Packages and modules that hold kernels, or what kernels are made from."""
 

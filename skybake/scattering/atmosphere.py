@@ -8,6 +8,13 @@ from typing import Any
 import numpy as np
 
 from skybake.jit.kept import Kept
+from skybake.jit.tables import (
+    arrays_from_content,
+    content_from_arrays,
+    has_tables,
+    read_tables,
+    write_tables,
+)
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.delta_m import ScaledMedium, keep_unscaled, phase_groups, scale_medium
 from skybake.optics.medium import Medium, pad_wavelengths
@@ -18,13 +25,6 @@ from skybake.scattering.field import DiffuseField, altitude_layers, sun_bins, su
 from skybake.scattering.grid import ORDER, no_field
 from skybake.scattering.harmonics import build_harmonics
 from skybake.scattering.solver import solve_light
-from skybake.scattering.store import (
-    arrays_from_content,
-    content_from_arrays,
-    has_tables,
-    read_tables,
-    write_tables,
-)
 from skybake.scattering.table_shapes import are_tables_of
 from skybake.scattering.tables import Atmosphere
 from skybake.scattering.transmittance import build_columns

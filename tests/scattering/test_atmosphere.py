@@ -7,9 +7,11 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
+from skybake.jit import tables
 from skybake.jit.digest import add_digest
 from skybake.jit.private_folder import open_private_folder
-from skybake.scattering import atmosphere, store
+from skybake.jit.tables import arrays_from_content, content_from_arrays
+from skybake.scattering import atmosphere
 from skybake.scattering.atmosphere import (
     KEPT,
     atmosphere_key,
@@ -17,7 +19,6 @@ from skybake.scattering.atmosphere import (
     forget_atmospheres,
     is_stored,
 )
-from skybake.scattering.store import arrays_from_content, content_from_arrays
 from tests.media import plain_medium
 
 MEDIUM = plain_medium(lambda h: np.exp(-h / 8.0), [0.01, 0.05])
@@ -26,7 +27,7 @@ MEDIUM = plain_medium(lambda h: np.exp(-h / 8.0), [0.01, 0.05])
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     private = open_private_folder(tmp_path)
-    monkeypatch.setattr(store, "cache_folder", lambda: private)
+    monkeypatch.setattr(tables, "cache_folder", lambda: private)
     return tmp_path / "atmospheres"
 
 
@@ -243,7 +244,7 @@ def test_the_tables_used_least_recently_go_first(folder, monkeypatch):
     others = [MEDIUM._replace(ground_albedo=np.full(2, 0.1 * i)) for i in range(3)]
     load(others[0])
     (path,) = folder.iterdir()
-    monkeypatch.setattr(store, "LARGEST_STORE", int(2.5 * path.stat().st_size))
+    monkeypatch.setattr(tables, "LARGEST_STORE", int(2.5 * path.stat().st_size))
     load(others[1])
     time.sleep(0.05)  # file systems count in clock ticks
     load(others[0])

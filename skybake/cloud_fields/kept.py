@@ -1,0 +1,47 @@
+"""Fields that are kept on disk, beside solved atmospheres."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from skybake.cloud_fields.field import CloudField
+from skybake.jit.cache import source_hash
+from skybake.jit.tables import read_tables, write_tables
+
+
+def kept_field(name: str, shape: tuple[float, ...], build: Callable[..., CloudField]) -> CloudField:
+    """Return a field that was built before, or build and keep it.
+
+    Parameters
+    ----------
+    name : str
+        Of the kind of cloud.
+    shape : tuple of float
+        Arguments of `build`: all that the field depends on besides the code.
+    build : callable
+        Makes the field.
+    """
+    key = _key(name, shape)
+    arrays = read_tables(key)
+    if arrays is not None and set(arrays) == set(CloudField._fields):
+        return _from_arrays(arrays)
+    field = build(*shape)
+    write_tables(key, field._asdict())
+    return field
+
+
+def _key(name: str, shape: tuple[float, ...]) -> str:
+    text = repr(
+        (name, [float(each) for each in shape], source_hash("cloud_fields"), np.__version__)
+    )
+    return f"clouds-{hashlib.sha256(text.encode()).hexdigest()[:32]}"
+
+
+def _from_arrays(arrays: dict[str, Any]) -> CloudField:
+    """Return a field whose numbers were kept as arrays without an axis."""
+    plain = {name: array if array.ndim else array.item() for name, array in arrays.items()}
+    return CloudField(**plain)
