@@ -255,4 +255,6 @@ def dimming_at(dimming, h, channel):
     while h > dimming.altitude[k + 1]:
         k += 1
     u = (h - dimming.altitude[k]) / (dimming.altitude[k + 1] - dimming.altitude[k])
-    return dimming.ratio[k, channel] + u * (dimming.ratio[k + 1, channel] - dimming.ratio[k, channel])
+    return dimming.ratio[k, channel] + u * (
+        dimming.ratio[k + 1, channel] - dimming.ratio[k, channel]
+    )

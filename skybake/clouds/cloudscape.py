@@ -207,10 +207,7 @@ class Cloudscape:
         """Share of the sun along rays, see `dim_visibility`."""
         out = np.ones(distance.shape, np.float32)
         for layer, solved in zip(self.layers, self.solved, strict=True):
-            given = [
-                flatten(each)
-                for each in (layer.field, solved.light, solved.leaving)
-            ]
+            given = [flatten(each) for each in (layer.field, solved.light, solved.leaving)]
             rays = flatten(directions), flatten(distance), flatten(self.sun)
 
             def work(first: int, last: int, given=given, rays=rays) -> None:  # type: ignore[no-untyped-def]
@@ -239,9 +236,7 @@ class Cloudscape:
         rays = flatten(directions), flatten(visible)
 
         def work(first: int, last: int) -> None:
-            fill_lit(
-                *given, self.air.radius, self.altitude, *rays, first, last, lit, through
-            )
+            fill_lit(*given, self.air.radius, self.altitude, *rays, first, last, lit, through)
 
         self.workers.run_rows(len(directions), work, chunk=AT_ONCE)
         return lit, through
@@ -360,9 +355,7 @@ class Cloudscape:
         opacity = np.empty(zenith.size, np.float32)
         flat = [flatten(each) for each in (total, row, weight, distance, lit, through, seen)]
         angles = flatten(np.ascontiguousarray(zenith)), flatten(np.ascontiguousarray(bearing))
-        fill_places(
-            *angles, self.first, self.horizon, NODE_ROWS, NODE_COLUMNS, False, *flat[1:3]
-        )
+        fill_places(*angles, self.first, self.horizon, NODE_ROWS, NODE_COLUMNS, False, *flat[1:3])
 
         def work(first: int, last: int) -> None:
             compose(*flat, passing, first, last, out, opacity)
@@ -441,6 +434,4 @@ def _grid(
 def sun_vector(azimuth: float, elevation: float) -> Array:
     """Unit vector toward a compass bearing and an elevation: x east, y north, z up."""
     flat = math.cos(elevation)
-    return np.array(
-        [flat * math.sin(azimuth), flat * math.cos(azimuth), math.sin(elevation)]
-    )
+    return np.array([flat * math.sin(azimuth), flat * math.cos(azimuth), math.sin(elevation)])

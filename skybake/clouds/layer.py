@@ -274,8 +274,9 @@ def _reflectance(
     scattering = Scattering(particles.order, quadrature, particles.moments, sun)
     diffuse = solve_diffuse(voxels, scattering, entering, workers)
     slope = max(float(sun[2]), 0.0)
-    down = quadrature.flux(entering.above.T) + slope * (
-        air.sunlight(np.array([grid.top]), float(sun[2])) @ weights
-    )[0]
+    down = (
+        quadrature.flux(entering.above.T)
+        + slope * (air.sunlight(np.array([grid.top]), float(sun[2])) @ weights)[0]
+    )
     ratio: Array = diffuse.up / np.maximum(down, 1e-300)
     return np.clip(ratio, 0.0, 0.95)
