@@ -257,7 +257,7 @@ class Cloudscape:
             is_surface = layer.field.kind == SURFACE
             marching = Marching(
                 depth=self.depth,
-                shortest=0.008 if is_surface else 0.2 * float(layer.grid.spacing[0]),
+                shortest=0.012 if is_surface else 0.2 * float(layer.grid.spacing[0]),
                 longest=0.5 * float(layer.grid.spacing[2]),
                 taps=TAPS[not is_surface],
                 reach=REACH[not is_surface] * float(layer.grid.spacing[2]),
