@@ -134,7 +134,7 @@ def _unfitted(surface: Surface) -> CloudField:
         noise=surface.noise,
         clearance=np.zeros((1, 1, 1), np.float32),
         block=np.ones(3),
-        steepness=_steepness(distance, surface.spacing, 0, levels - 1),
+        steepness=1.0,
     )
 
 
@@ -210,9 +210,12 @@ def _with_clearance(field: CloudField) -> CloudField:
     blurs = field.largest_blur * np.linspace(0.0, 1.0, 4 * _BLURS - 3) ** 2
     amplitudes, waves = field.displacement[:, 0], field.displacement[:, 5]
     noise = np.maximum(amplitudes * (1.0 - 4.0 * blurs[:, None] * waves), 0.0).sum(1)
-    edges = np.minimum(field.edge + blurs, field.widest_edge)
-    # Between these blurs the reach bends; a step more covers what it may exceed them by.
-    reach = float(np.max(noise + 0.5 * edges)) + float(np.abs(np.diff(noise)).max(initial=0.0))
+    reaches = noise + 0.5 * np.minimum(field.edge + blurs, field.widest_edge)
+    # Between these blurs the reach bends; a step of the noise covers what it may differ by.
+    between = float(np.abs(np.diff(noise)).max(initial=0.0))
+    reach = float(reaches.max()) + between
+    nearest = float(reaches.min()) - between + float(field.shift.min())
+    steepness = _steepness(field.distance, field.spacing, nearest / STEP)
     cloudy = field.distance < (reach + float(field.shift.max())) / STEP
     for axis in range(3):
         turned = np.roll(cloudy, -1, axis)
@@ -222,16 +225,16 @@ def _with_clearance(field: CloudField) -> CloudField:
     heights = field.base + np.arange(1, len(cloudy) + 1) * field.spacing[0]
     cloudy &= (heights > bottom)[:, None, None]
     mask, block = blocks_of(cloudy, field.spacing, _NODES_PER_BLOCK)
-    return field._replace(clearance=block_clearance(mask, block), block=block)
+    return field._replace(clearance=block_clearance(mask, block), block=block, steepness=steepness)
 
 
 @kernel
-def _steepness(distance, spacing, first, last):
-    """Largest gradient of values that are trilinear between planes, at least 1."""
-    _, rows, columns = distance.shape
+def _steepness(distance, spacing, nearest):
+    """Largest gradient where trilinear values are above `nearest`, at least 1."""
+    levels, rows, columns = distance.shape
     dz, dy, dx = spacing[0] / STEP, spacing[1] / STEP, spacing[2] / STEP
     largest = 1.0
-    for k in range(first, last):
+    for k in range(levels - 1):
         for j in range(rows):
             north = j + 1 if j + 1 < rows else 0
             for i in range(columns):
@@ -240,6 +243,8 @@ def _steepness(distance, spacing, first, last):
                 c, d = float(distance[k, north, i]), float(distance[k, north, east])
                 e, f = float(distance[k + 1, j, i]), float(distance[k + 1, j, east])
                 g, h = float(distance[k + 1, north, i]), float(distance[k + 1, north, east])
+                if max(a, b, c, d, e, f, g, h) <= nearest:
+                    continue
                 x = max(abs(b - a), abs(d - c), abs(f - e), abs(h - g)) / dx
                 y = max(abs(c - a), abs(d - b), abs(g - e), abs(h - f)) / dy
                 z = max(abs(e - a), abs(f - b), abs(g - c), abs(h - d)) / dz
