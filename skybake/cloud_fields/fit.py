@@ -24,7 +24,7 @@ _BLURS = 7
 _COLUMNS = 139
 _FEW_COLUMNS = 67
 _NODES_PER_BLOCK = (3, 6, 6)
-_TRIALS = 9
+_TRIALS = 12
 _CLOSE = 5e-4
 
 
@@ -96,18 +96,22 @@ def _root(cover_at: Callable[[float], float], cover: float, farthest: float) -> 
     low, high = -farthest, farthest
     below, above = 0.0, 1.0
     offset, found = 0.0, cover_at(0.0)
-    for _ in range(_TRIALS):
-        if cover < 1.0 and abs(found - cover) < _CLOSE:
-            return offset
+    best, nearest = offset, abs(found - cover)
+    for trial in range(_TRIALS):
+        if cover < 1.0 and nearest < _CLOSE:
+            return best
         if found < cover:
             low, below = offset, found
         else:
             high, above = offset, found
-        # Between the ends where they are known, halfway where cover is saturated.
-        share = 0.5 if cover >= 1.0 else (cover - below) / max(above - below, 1e-9)
+        # Halfway in turn with between the ends, which alone would approach from one side only.
+        is_half = cover >= 1.0 or trial % 2
+        share = 0.5 if is_half else (cover - below) / max(above - below, 1e-9)
         offset = low + min(max(share, 0.1), 0.9) * (high - low)
         found = cover_at(offset)
-    return offset if cover < 1.0 else high
+        if abs(found - cover) < nearest:
+            best, nearest = offset, abs(found - cover)
+    return best if cover < 1.0 else high
 
 
 def _unfitted(surface: Surface) -> CloudField:
@@ -152,8 +156,10 @@ def _column_depths(
 
 def _scale(relative: npt.NDArray[np.float32], optical_depth: float) -> float:
     """Return the factor with which columns that count as covered have a mean optical depth."""
-    threshold = _threshold(optical_depth)
-    scale = optical_depth / max(float(relative.max()), 1e-30)
+    threshold, deepest = _threshold(optical_depth), float(relative.max())
+    if deepest <= 0.0:
+        return 0.0
+    scale = optical_depth / deepest
     for _ in range(30):
         covered = relative[scale * relative > threshold]
         if not covered.size:
