@@ -12,8 +12,9 @@ from tests.cli.sequences import digests, sequence
 
 CLEAR = """
 import sys
+from click.testing import CliRunner
 from skybake.cli import main
-main(sys.argv[1:], standalone_mode=False)
+assert CliRunner().invoke(main, sys.argv[1:]).exit_code == 0
 rooms = ("skybake.clouds", "skybake.cloud_fields")
 print([name for name in sys.modules if name.startswith(rooms)])
 """
