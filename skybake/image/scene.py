@@ -170,6 +170,11 @@ class Scene:
             workers=self.workers,
         )
 
+    def light_clouds(self) -> None:
+        """Solve for the light of clouds, which takes longest, before pixels show them."""
+        if self.cloudscape is not None:
+            _ = self.cloudscape.nodes
+
     @cached_property
     def survey(self) -> np.ndarray:
         """Pixel values of a small equirect map of the sky, shape (SURVEY_ROWS, column, 3).
