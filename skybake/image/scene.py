@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from functools import cache, cached_property
-
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -321,19 +320,23 @@ class Scene:
         if pixels.min(initial=0.0) < 0.0 or weights.min() < 0.0:
             pixels[pixels @ weights < 0.0] = 0.0
         if self.cloudscape is not None:
-            return self._with_clouds(pixels, zenith, azimuth, footprint)
+            return self._with_clouds(self.cloudscape, pixels, zenith, azimuth, footprint)
         return pixels
 
     def _with_clouds(
-        self, pixels: np.ndarray, zenith: Array, azimuth: Array, footprint: Array | float
+        self,
+        cloudscape: Cloudscape,
+        pixels: np.ndarray,
+        zenith: Array,
+        azimuth: Array,
+        footprint: Array | float,
     ) -> np.ndarray:
         """Put clouds into pixels, in XYZ: of these none is negative, as ratios of light need."""
-        assert self.cloudscape is not None
         to_rgb = rgb_from_xyz(self.settings.encoding.space)
         xyz = pixels.reshape(-1, 3) @ np.linalg.inv(to_rgb).T.astype(np.float32)
         shape = pixels.shape[:2]
         bearing = np.broadcast_to(azimuth + self.settings.lighting.sun_azimuth, shape).ravel()
-        light, _ = self.cloudscape.put_into(
+        light, _ = cloudscape.put_into(
             xyz,
             np.broadcast_to(zenith, shape).ravel(),
             bearing,
