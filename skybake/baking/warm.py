@@ -15,9 +15,11 @@ from skybake.baking.write import bake
 from skybake.cloud_fields.build import build_field
 from skybake.image.settings import Clouds, Lighting, MapSettings, View
 from skybake.optics.medium import build_medium
+from skybake.optics.phase import build_phase
 from skybake.preset import Planet, load_preset
 from skybake.projection import Cubemap, Equirect, Fisheye, Perspective
 from skybake.projection.cubemap import LAYOUTS
+from skybake.reference import cloudy
 from skybake.reference.estimate import radiance
 from skybake.scattering.atmosphere import build_atmosphere
 from skybake.sky.sky import METHODS, WAVELENGTHS, Sky
@@ -77,6 +79,18 @@ def _compile_clouds(folder: Path) -> None:
             build_field(layer)
     settings = replace(SMALL, clouds=Clouds(quality="draft"))
     bake(worlds[0], folder / "clouds.exr", settings)
+    clouds = worlds[0].clouds
+    cloudy.radiance(
+        build_medium(worlds[0], WAVELENGTHS),
+        [build_field(layer) for layer in clouds],
+        [build_phase(layer.phase, WAVELENGTHS) for layer in clouds],
+        0.0,
+        SMALL.lighting.sun_elevation,
+        SMALL.lighting.sun_azimuth,
+        np.zeros(1),
+        np.zeros(1),
+        samples=2,
+    )
 
 
 def _kinds() -> list[MapSettings]:

@@ -164,11 +164,12 @@ def bake_scene(
     """
     planet, settings = scene.planet, scene.settings
     paths = map_paths(output, settings)
+    begin = stage or _ignore
     _ = scene.sun  # which can be refused, before what takes long
     if planet.clouds:
-        _tell(stage, "clouds")
+        begin("clouds")
         scene.light_clouds()
-    _tell(stage, "pixels")
+    begin("pixels")
     light = light_of_scene(scene)
     attributes = {
         **attributes_from_light(light),
@@ -227,9 +228,8 @@ def bake_scene(
     )
 
 
-def _tell(stage: Callable[[str], None] | None, name: str) -> None:
-    if stage is not None:
-        stage(name)
+def _ignore(_: str) -> None:
+    pass
 
 
 def _write(

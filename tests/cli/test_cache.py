@@ -110,6 +110,8 @@ USES = [
     ("render", *SMALL, "--method", "hillaire", "--sun-disc", "only"),
     ("render", "--projection", "cubemap", "--size", "32", "--cube-layout", "cross"),
     ("render", "--projection", "cubemap", "--size", "32", "--altitude", "400km"),
+    ("render", *SMALL, "--preset", "earth-overcast", "--clouds-quality", "draft"),
+    ("render", *SMALL, "--preset", "mars-ice-clouds", "--clouds-quality", "draft", "--preview"),
 ]
 
 
@@ -152,6 +154,8 @@ def test_after_warm_nothing_is_compiled(tmp_path, cold):
         status, _, errors = run(*use, "-q", "-o", "a.exr", cwd=tmp_path, env=cold)
         assert (status, errors) == (0, "")
     for method in ("full", "reference"):
-        status, _, errors = run("probe", "--method", method, "--samples", "2", env=cold)
-        assert (status, errors) == (0, "")
+        for world in ("earth", "earth-fair"):
+            traced = ("--preset", world, "--method", method, "--samples", "2")
+            status, _, errors = run("probe", *traced, env=cold)
+            assert (status, errors) == (0, "")
     assert kernels() == compiled
