@@ -255,11 +255,13 @@ class Cloudscape:
         rays, sun = flatten(directions), flatten(self.sun)
         for k, (layer, solved) in enumerate(zip(self.layers, self.solved, strict=True)):
             is_surface = layer.field.kind == SURFACE
+            # Voxels of light are finer than those of the field there.
+            is_deck = layer.grid.extinction.shape[1:] == (1, 1)
             marching = Marching(
                 depth=self.depth,
                 shortest=0.008 if is_surface else 0.2 * float(layer.grid.spacing[0]),
                 longest=0.5 * float(layer.grid.spacing[2]),
-                taps=TAPS[not is_surface],
+                taps=0 if is_deck else TAPS[not is_surface],
                 reach=REACH[not is_surface] * float(layer.grid.spacing[2]),
                 pixel=pixel,
             )
