@@ -12,6 +12,7 @@ from skybake.cloud_fields.fit import Surface, fitted_field
 from skybake.cloud_fields.noise import billows, random_volume
 from skybake.cloud_fields.population import Bubbles, cumulus_bubbles
 from skybake.cloud_fields.scales import displacements, dyadic
+from skybake.cloud_fields.slopes import limit_slopes
 from skybake.jit.kernel import kernel
 from skybake.jit.workers import ALL_CPUS
 
@@ -56,9 +57,11 @@ def cumulus(
     for bubbles in cumulus_bubbles(cover, size, depth, period, seed):
         _stamp(nodes, bubbles, (spacing, rise, float(heights[0])), margin)
     nodes = _warped(nodes, spacing, rise, 0.055 * size, seed)
+    steps = np.array([rise, spacing, spacing])
+    limit_slopes(nodes, steps)
     surface = Surface(
         nodes=nodes,
-        spacing=np.array([rise, spacing, spacing]),
+        spacing=steps,
         base=base + float(heights[0]),
         profile=np.maximum(heights + 0.06 * depth, 0.03 * depth) ** (2.0 / 3.0),
         edge=0.026 * size,

@@ -12,6 +12,7 @@ from skybake.cloud_fields.field import CloudField
 from skybake.cloud_fields.fit import Surface, fitted_field
 from skybake.cloud_fields.noise import billows, random_map
 from skybake.cloud_fields.scales import displacements, dyadic
+from skybake.cloud_fields.slopes import limit_slopes
 from skybake.jit.kernel import kernel
 
 Map = npt.NDArray[np.float64]
@@ -107,10 +108,12 @@ def deck(
     upper, lower = (0.85 * height).astype(np.float32), (floor - 0.15 * height).astype(np.float32)
     z = heights.astype(np.float32)[:, None, None]
     slope = _inverse_steepness(height, spacing)
-    nodes = np.maximum(z - upper, lower - z) * slope
+    nodes = np.clip(np.maximum(z - upper, lower - z) * slope, -margin, margin)
+    steps = np.array([rise, spacing, spacing])
+    limit_slopes(nodes, steps)
     surface = Surface(
-        nodes=np.clip(nodes, -margin, margin),
-        spacing=np.array([rise, spacing, spacing]),
+        nodes=nodes,
+        spacing=steps,
         base=base + float(heights[0]),
         profile=np.maximum(heights + 0.3 * depth, 0.05 * depth) ** (2.0 / 3.0),
         edge=look.edge * depth,

@@ -24,7 +24,7 @@ _BLURS = 7
 _COLUMNS = 139
 _FEW_COLUMNS = 67
 _NODES_PER_BLOCK = (3, 6, 6)
-_TRIALS = 9
+_TRIALS = 12
 _CLOSE = 5e-4
 
 
@@ -96,18 +96,22 @@ def _root(cover_at: Callable[[float], float], cover: float, farthest: float) -> 
     low, high = -farthest, farthest
     below, above = 0.0, 1.0
     offset, found = 0.0, cover_at(0.0)
-    for _ in range(_TRIALS):
-        if cover < 1.0 and abs(found - cover) < _CLOSE:
-            return offset
+    best, nearest = offset, abs(found - cover)
+    for trial in range(_TRIALS):
+        if cover < 1.0 and nearest < _CLOSE:
+            return best
         if found < cover:
             low, below = offset, found
         else:
             high, above = offset, found
-        # Between the ends where they are known, halfway where cover is saturated.
-        share = 0.5 if cover >= 1.0 else (cover - below) / max(above - below, 1e-9)
+        # Halfway in turn with between the ends, which alone would approach from one side only.
+        is_half = cover >= 1.0 or trial % 2
+        share = 0.5 if is_half else (cover - below) / max(above - below, 1e-9)
         offset = low + min(max(share, 0.1), 0.9) * (high - low)
         found = cover_at(offset)
-    return offset if cover < 1.0 else high
+        if abs(found - cover) < nearest:
+            best, nearest = offset, abs(found - cover)
+    return best if cover < 1.0 else high
 
 
 def _unfitted(surface: Surface) -> CloudField:
@@ -134,7 +138,7 @@ def _unfitted(surface: Surface) -> CloudField:
         noise=surface.noise,
         clearance=np.zeros((1, 1, 1), np.float32),
         block=np.ones(3),
-        steepness=_steepness(distance, surface.spacing, 0, levels - 1),
+        steepness=1.0,
     )
 
 
@@ -152,8 +156,10 @@ def _column_depths(
 
 def _scale(relative: npt.NDArray[np.float32], optical_depth: float) -> float:
     """Return the factor with which columns that count as covered have a mean optical depth."""
-    threshold = _threshold(optical_depth)
-    scale = optical_depth / max(float(relative.max()), 1e-30)
+    threshold, deepest = _threshold(optical_depth), float(relative.max())
+    if deepest <= 0.0:
+        return 0.0
+    scale = optical_depth / deepest
     for _ in range(30):
         covered = relative[scale * relative > threshold]
         if not covered.size:
@@ -210,9 +216,12 @@ def _with_clearance(field: CloudField) -> CloudField:
     blurs = field.largest_blur * np.linspace(0.0, 1.0, 4 * _BLURS - 3) ** 2
     amplitudes, waves = field.displacement[:, 0], field.displacement[:, 5]
     noise = np.maximum(amplitudes * (1.0 - 4.0 * blurs[:, None] * waves), 0.0).sum(1)
-    edges = np.minimum(field.edge + blurs, field.widest_edge)
-    # Between these blurs the reach bends; a step more covers what it may exceed them by.
-    reach = float(np.max(noise + 0.5 * edges)) + float(np.abs(np.diff(noise)).max(initial=0.0))
+    reaches = noise + 0.5 * np.minimum(field.edge + blurs, field.widest_edge)
+    # Between these blurs the reach bends; a step of the noise covers what it may differ by.
+    between = float(np.abs(np.diff(noise)).max(initial=0.0))
+    reach = float(reaches.max()) + between
+    nearest = float(reaches.min()) - between + float(field.shift.min())
+    steepness = _steepness(field.distance, field.spacing, nearest / STEP)
     cloudy = field.distance < (reach + float(field.shift.max())) / STEP
     for axis in range(3):
         turned = np.roll(cloudy, -1, axis)
@@ -222,16 +231,16 @@ def _with_clearance(field: CloudField) -> CloudField:
     heights = field.base + np.arange(1, len(cloudy) + 1) * field.spacing[0]
     cloudy &= (heights > bottom)[:, None, None]
     mask, block = blocks_of(cloudy, field.spacing, _NODES_PER_BLOCK)
-    return field._replace(clearance=block_clearance(mask, block), block=block)
+    return field._replace(clearance=block_clearance(mask, block), block=block, steepness=steepness)
 
 
 @kernel
-def _steepness(distance, spacing, first, last):
-    """Largest gradient of values that are trilinear between planes, at least 1."""
-    _, rows, columns = distance.shape
+def _steepness(distance, spacing, nearest):
+    """Largest gradient where trilinear values are above `nearest`, at least 1."""
+    levels, rows, columns = distance.shape
     dz, dy, dx = spacing[0] / STEP, spacing[1] / STEP, spacing[2] / STEP
     largest = 1.0
-    for k in range(first, last):
+    for k in range(levels - 1):
         for j in range(rows):
             north = j + 1 if j + 1 < rows else 0
             for i in range(columns):
@@ -240,6 +249,8 @@ def _steepness(distance, spacing, first, last):
                 c, d = float(distance[k, north, i]), float(distance[k, north, east])
                 e, f = float(distance[k + 1, j, i]), float(distance[k + 1, j, east])
                 g, h = float(distance[k + 1, north, i]), float(distance[k + 1, north, east])
+                if max(a, b, c, d, e, f, g, h) <= nearest:
+                    continue
                 x = max(abs(b - a), abs(d - c), abs(f - e), abs(h - g)) / dx
                 y = max(abs(c - a), abs(d - b), abs(g - e), abs(h - f)) / dy
                 z = max(abs(e - a), abs(f - b), abs(g - c), abs(h - d)) / dz

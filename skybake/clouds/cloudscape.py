@@ -21,7 +21,14 @@ from skybake.clouds.airlight import (
     stretch_ends,
 )
 from skybake.clouds.compose import compose, fill_places
-from skybake.clouds.layer import Grid, SolvedLayer, channels_to_wavelengths, solve_layer
+from skybake.clouds.layer import (
+    Grid,
+    SolvedLayer,
+    Surroundings,
+    channels_to_wavelengths,
+    reflectance_of,
+    solve_layer,
+)
 from skybake.clouds.march import Marching, allocate_march, fill_march
 from skybake.clouds.particles import divide_phase
 from skybake.clouds.quadrature import double_gauss
@@ -125,15 +132,33 @@ class Cloudscape:
 
     @cached_property
     def solved(self) -> list[SolvedLayer]:
-        """The light of each layer, from the highest down."""
-        out = []
-        for layer in self.layers:
-            particles = divide_phase(layer.phase, layer.middle, layer.order)
-            out.append(
-                solve_layer(
-                    layer.grid, particles, self.air, self.weights, self.suns(layer), self.workers
-                )
+        """The light of each layer, from the highest down.
+
+        A layer is lit by what those above leave on average, and stands over what those below
+        reflect.
+        """
+        particles = [divide_phase(each.phase, each.middle, each.order) for each in self.layers]
+        given = self.air, self.weights
+        reflects: list[Array] = []
+        for layer, particle in zip(reversed(self.layers), reversed(particles), strict=True):
+            beneath = reflects[-1] if reflects else None
+            reflects.append(
+                reflectance_of(layer.grid, particle, *given, self.sun, beneath, self.workers)
             )
+        reflects.reverse()
+        out: list[SolvedLayer] = []
+        sun_share = sky_ratio = np.ones(self.weights.shape[1])
+        for k, (layer, particle) in enumerate(zip(self.layers, particles, strict=True)):
+            ground = reflects[k + 1] if k + 1 < len(reflects) else None
+            around = Surroundings(sun_share, sky_ratio, ground)
+            suns = self.suns(layer)
+            solved = solve_layer(
+                layer.grid, particle, *given, suns, around, reflects[k], self.workers
+            )
+            at = self._nearest(solved)
+            sun_share = sun_share * float(solved.leaving[at].mean())
+            sky_ratio = solved.down[at] / np.maximum(solved.down_clear[at], 1e-300)
+            out.append(solved)
         return out
 
     def suns(self, layer: Layer) -> Array:
@@ -259,7 +284,7 @@ class Cloudscape:
             is_deck = layer.grid.extinction.shape[1:] == (1, 1)
             marching = Marching(
                 depth=self.depth,
-                shortest=0.008 if is_surface else 0.2 * float(layer.grid.spacing[0]),
+                shortest=0.012 if is_surface else 0.2 * float(layer.grid.spacing[0]),
                 longest=0.5 * float(layer.grid.spacing[2]),
                 taps=0 if is_deck else TAPS[not is_surface],
                 reach=REACH[not is_surface] * float(layer.grid.spacing[2]),

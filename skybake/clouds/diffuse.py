@@ -73,6 +73,8 @@ class Entering(NamedTuple):
         Irradiance of a horizontal plane at the base without clouds, by the sky alone.
     down_sun : ndarray of float64, shape (channel,)
         The same by the sun.
+    sun_share : ndarray of float64, shape (channel,)
+        What clouds above leave of the sun.
     """
 
     sun: Array
@@ -81,6 +83,7 @@ class Entering(NamedTuple):
     below_lit: Array
     down: Array
     down_sun: Array
+    sun_share: Array
 
 
 class Diffuse(NamedTuple):
@@ -248,9 +251,10 @@ class _Passes:
         self._sweep(0, known, new)
         down = float(quadrature.flux(self._radiance.mean(axis=(1, 2), dtype=float)))
         # Light from below is that of clear air, as far as the light comes that makes it.
-        sunlight = entering.down_sun[0] * self._leaving
+        lit = self._leaving * entering.sun_share[0]
+        sunlight = entering.down_sun[0] * lit
         share = (down + sunlight) / (entering.down[0] + entering.down_sun[0] + 1e-300)
-        below = share * entering.below[0] + self._leaving * entering.below_lit[0]
+        below = share * entering.below[0] + lit * entering.below_lit[0]
         self._radiance[...] = below[:, None, None]
         self._sweep(1, known, new)
         up = float(quadrature.flux(self._radiance.mean(axis=(1, 2), dtype=float)))

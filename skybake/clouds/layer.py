@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from skybake.clouds.air import ClearAir
+from skybake.clouds.air import ClearAir, Light
 from skybake.clouds.beam import LEAST_SLOPE, fill_beam
 from skybake.clouds.diffuse import (
     Diffuse,
@@ -31,6 +32,8 @@ SKETCH = 2
 """How often voxels are merged by two for a first sight of what a layer reflects."""
 
 SKETCH_LEAST = 8
+
+MOST_REFLECTED = 0.98
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,10 +79,10 @@ class SolvedLayer:
         Of the diffuse light, over all directions and the tile, times 4 pi.
     down : ndarray of float64, shape (sun, channel)
         Diffuse irradiance of a horizontal plane at the base.
-    down_clear, down_sun : ndarray of float64, shape (sun, channel)
-        What the sky and the sun would bring there without clouds.
+    down_clear : ndarray of float64, shape (sun, channel)
+        What the sky would bring there without clouds.
     reflectance : ndarray of float64, shape (channel,)
-        Of layer and ground, seen from above, for the first sun.
+        Of the layer and what is beneath, seen from above.
     """
 
     light: LayerLight
@@ -87,8 +90,24 @@ class SolvedLayer:
     mean_radiance: Array
     down: Array
     down_clear: Array
-    down_sun: Array
     reflectance: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Surroundings:
+    """Other layers around one.
+
+    Attributes
+    ----------
+    sun_share, sky_ratio : ndarray of float64, shape (channel,)
+        What layers above leave of the sun's beam, and of the sky's irradiance.
+    ground : ndarray of float64, shape (channel,) or None
+        Reflectance of the layers and the ground beneath; None for the ground alone.
+    """
+
+    sun_share: Array
+    sky_ratio: Array
+    ground: Array | None
 
 
 def solve_layer(
@@ -97,6 +116,8 @@ def solve_layer(
     air: ClearAir,
     weights: Array,
     suns: Array,
+    around: Surroundings,
+    reflectance: Array,
     workers: Workers,
 ) -> SolvedLayer:
     """Solve for the light of a layer under several heights of the sun.
@@ -114,28 +135,30 @@ def solve_layer(
         positive, as XYZ are.
     suns : ndarray of float64, shape (sun, 3)
         Unit vectors toward the sun, in the order of their z.
+    around : Surroundings
+        Other layers.
+    reflectance : ndarray of float64, shape (channel,)
+        Of this layer and what is beneath, see `reflectance_of`.
     workers : Workers
         Threads that do the work.
     """
-    turn = math.atan2(suns[0, 1], suns[0, 0]) + math.pi / (2.0 * (particles.order + 1))
-    quadrature = double_gauss(particles.order, turn)
-    reflectance = _reflectance(grid, particles, air, weights, suns[-1], workers)
+    quadrature, turn = directions_of(particles, suns[0])
     harmonics, channels = (particles.order + 1) ** 2, weights.shape[1]
     shape = len(suns), *grid.extinction.shape, 1 + channels * harmonics
     volume = np.empty(shape, np.float32)
     leaving = np.empty((len(suns), *grid.extinction.shape[1:]), np.float32)
     irradiance = np.empty((len(suns), grid.extinction.shape[0], channels))
     mean = np.empty_like(irradiance)
-    down, down_clear, down_sun = (np.empty((len(suns), channels)) for _ in range(3))
+    down, down_clear = np.empty((len(suns), channels)), np.empty((len(suns), channels))
     for s, sun in enumerate(suns):
         voxels, leaving[s] = shine(grid, particles.fraction, sun)
-        entering = enter(grid, quadrature, turn, air, weights, sun, reflectance)
+        entering = enter(grid, quadrature, turn, air, weights, sun, around, reflectance)
         scattering = Scattering(particles.order, quadrature, particles.moments, sun)
         diffuse = solve_diffuse(voxels, scattering, entering, workers)
         fill_volume(voxels, diffuse, volume[s])
         irradiance[s] = entering.sun.T
         mean[s] = diffuse.moments[:, :, :, 0].mean(axis=(2, 3), dtype=float).T
-        down[s], down_clear[s], down_sun[s] = diffuse.down, entering.down, entering.down_sun
+        down[s], down_clear[s] = diffuse.down, entering.down
     degree = degrees(particles.order)
     light = LayerLight(
         volume=volume,
@@ -149,7 +172,13 @@ def solve_layer(
         truncated=particles.truncated,
         peak=particles.peak,
     )
-    return SolvedLayer(light, leaving, mean, down, down_clear, down_sun, reflectance)
+    return SolvedLayer(light, leaving, mean, down, down_clear, reflectance)
+
+
+def directions_of(particles: Particles, sun: Array) -> tuple[Quadrature, float]:
+    """Directions of a layer's light and the azimuth of the first, which avoids the sun's."""
+    turn = math.atan2(sun[1], sun[0]) + math.pi / (2.0 * (particles.order + 1))
+    return double_gauss(particles.order, turn), turn
 
 
 def shine(grid: Grid, fraction: float, sun: Array) -> tuple[Voxels, Floats]:
@@ -181,37 +210,53 @@ def enter(
     air: ClearAir,
     weights: Array,
     sun: Array,
+    around: Surroundings,
     reflectance: Array | None,
 ) -> Entering:
     """Light that enters a layer.
 
     Parameters
     ----------
-    grid, quadrature, turn, air, weights, sun
+    grid, quadrature, turn, air, weights, sun, around
         As of `solve_layer`.
-    reflectance : ndarray of float64, shape (channel,), optional
-        Of layer and ground, by which the sky above is brighter than over the ground alone.
+    reflectance : ndarray of float64, shape (channel,) or None
+        Of the layer and what is beneath, by which the sky above is brighter than over the ground.
     """
-    above = _boundary(quadrature, turn, quadrature.downward, air, grid.top, sun)
+
+    def mean_light(altitude: float, hemisphere: slice) -> Light:
+        def light(directions: Array) -> Array:
+            return np.stack(air.light_at(altitude, directions, sun), axis=1)
+
+        parts = _mean_in_cells(quadrature, turn, hemisphere, light)
+        return Light(parts[:, 0], parts[:, 1])
+
+    above = mean_light(grid.top, quadrature.downward)
     sky = above.single + above.diffuse
     if reflectance is not None:
+
+        def glow(directions: Array) -> Array:
+            return air.over_bright(grid.top, directions, sun)
+
         albedo = channels_to_wavelengths(reflectance, weights)
-        sky = sky + air.brightening(albedo) * _boundary_of(
-            quadrature,
-            turn,
-            quadrature.downward,
-            lambda directions: air.over_bright(grid.top, directions, sun),
-        )
-    below = _boundary(quadrature, turn, quadrature.upward, air, grid.base, sun)
-    at_base = _boundary(quadrature, turn, quadrature.downward, air, grid.base, sun)
+        more = _mean_in_cells(quadrature, turn, quadrature.downward, glow)
+        sky = sky + air.brightening(albedo) * more
+    below = mean_light(grid.base, quadrature.upward)
+    at_base = mean_light(grid.base, quadrature.downward)
+    down = quadrature.flux((at_base.single + at_base.diffuse) @ weights)
     slope = max(float(sun[2]), 0.0)
+    down_sun = slope * (air.sunlight(np.array([grid.base]), float(sun[2])) @ weights)[0]
+    brighter = np.ones_like(down)
+    if around.ground is not None:
+        up = quadrature.flux((below.single + below.diffuse) @ weights)
+        brighter = around.ground * (down + down_sun) / np.maximum(up, 1e-300)
     return Entering(
-        sun=(air.sunlight(grid.levels, float(sun[2])) @ weights).T,
-        above=(sky @ weights).T,
-        below=(below.diffuse @ weights).T,
+        sun=(air.sunlight(grid.levels, float(sun[2])) @ weights * around.sun_share).T,
+        above=(sky @ weights * around.sky_ratio).T,
+        below=(below.diffuse @ weights * brighter).T,
         below_lit=(below.single @ weights).T,
-        down=quadrature.flux((at_base.single + at_base.diffuse) @ weights),
-        down_sun=slope * (air.sunlight(np.array([grid.base]), float(sun[2])) @ weights)[0],
+        down=down,
+        down_sun=down_sun,
+        sun_share=around.sun_share,
     )
 
 
@@ -220,63 +265,58 @@ def channels_to_wavelengths(values: Array, weights: Array) -> Array:
     share = np.abs(weights)
     total = share.sum(axis=1, keepdims=True)
     spread: Array = (share / np.maximum(total, 1e-300)) @ values
-    return np.clip(spread, 0.0, 0.98)
+    return np.clip(spread, 0.0, MOST_REFLECTED)
 
 
-def _boundary(
-    quadrature: Quadrature,
-    turn: float,
-    hemisphere: slice,
-    air: ClearAir,
-    altitude: float,
-    sun: Array,
+def _mean_in_cells(
+    quadrature: Quadrature, turn: float, hemisphere: slice, light: Callable[[Array], Array]
 ) -> Array:
-    def light(directions: Array) -> Array:
-        parts = air.light_at(altitude, directions, sun)
-        return np.stack([parts.single, parts.diffuse], axis=1)
-
-    return _Parts(*_boundary_of(quadrature, turn, hemisphere, light).transpose(1, 0, 2))
-
-
-@dataclass(frozen=True, eq=False)
-class _Parts:
-    single: Array
-    diffuse: Array
-
-
-def _boundary_of(quadrature, turn, hemisphere, light):  # type: ignore[no-untyped-def]
-    """Mean radiance in the cells of a hemisphere's directions, which keep its flux."""
+    """Mean radiance in the cells of a hemisphere's directions, scaled to keep its flux."""
     directions, share = cell_samples(quadrature, turn, hemisphere)
     # Light comes from where it travels away.
     radiance = light(-directions.reshape(-1, 3))
     radiance = radiance.reshape(*directions.shape[:2], *radiance.shape[1:])
-    mean = np.einsum("ds,ds...->d...", share, radiance)
+    mean: Array = np.einsum("ds,ds...->d...", share, radiance)
     cells = np.abs(directions[..., 2]).mean(axis=1) * quadrature.weight[hemisphere]
     flux = np.tensordot(cells / cells.sum() * math.pi, mean, axes=1)
     coarse = quadrature.flux(mean)
     return mean * (flux / np.where(coarse == 0.0, 1.0, coarse))
 
 
-def _reflectance(
-    grid: Grid, particles: Particles, air: ClearAir, weights: Array, sun: Array, workers: Workers
+def reflectance_of(
+    grid: Grid,
+    particles: Particles,
+    air: ClearAir,
+    weights: Array,
+    sun: Array,
+    ground: Array | None,
+    workers: Workers,
 ) -> Array:
-    """Flux up over flux down at the top of a layer, on merged voxels, over the dark ground."""
+    """Flux up over flux down at the top of a layer, on merged voxels, shape (channel,).
+
+    Parameters
+    ----------
+    grid, particles, air, weights, workers
+        As of `solve_layer`.
+    sun : ndarray of float64, shape (3,)
+        Toward the sun.
+    ground : ndarray of float64, shape (channel,) or None
+        As of `Surroundings`.
+    """
     extinction, spacing = grid.extinction, grid.spacing
     for _ in range(SKETCH):
         if min(extinction.shape[1:]) < SKETCH_LEAST or any(n % 2 for n in extinction.shape[1:]):
             break
         extinction, spacing = merge_pairs(extinction), 2.0 * spacing
     sketch = Grid(extinction, spacing, grid.base)
-    turn = math.atan2(sun[1], sun[0])
-    quadrature = double_gauss(particles.order, turn)
+    quadrature, turn = directions_of(particles, sun)
     voxels, _ = shine(sketch, particles.fraction, sun)
-    entering = enter(sketch, quadrature, turn, air, weights, sun, None)
+    channels = weights.shape[1]
+    around = Surroundings(np.ones(channels), np.ones(channels), ground)
+    entering = enter(sketch, quadrature, turn, air, weights, sun, around, None)
     scattering = Scattering(particles.order, quadrature, particles.moments, sun)
     diffuse = solve_diffuse(voxels, scattering, entering, workers)
-    slope = max(float(sun[2]), 0.0)
-    down = (
-        quadrature.flux(entering.above.T)
-        + slope * (air.sunlight(np.array([grid.top]), float(sun[2])) @ weights)[0]
-    )
-    ratio: Array = diffuse.up / np.maximum(down, 1e-300)
-    return np.clip(ratio, 0.0, 0.95)
+    beam = air.sunlight(np.array([grid.top]), float(sun[2])) @ weights
+    down = quadrature.flux(entering.above.T) + max(float(sun[2]), 0.0) * beam[0]
+    ratio: Array = np.clip(diffuse.up / np.maximum(down, 1e-300), 0.0, MOST_REFLECTED)
+    return ratio

@@ -133,7 +133,7 @@ def fill_march(
         passes, depth = 1.0, 0.0
         weighted = total = 0.0
         at = begin
-        shortest = marching.shortest + 0.5 * at * marching.pixel
+        shortest = marching.shortest + at * marching.pixel
         step = shortest
         while at < end:
             step = min(step, end - at + 1e-6)
@@ -143,7 +143,7 @@ def fill_march(
             h = math.sqrt(px * px + py * py + above * above) - radius
             x, y = tile_place(field, radius, px, py, pz)
             blur = middle * marching.pixel
-            shortest = marching.shortest + 0.5 * blur
+            shortest = marching.shortest + blur
             clear = clearance_at(field, x, y, h, blur)
             if clear > 0.5 * shortest:
                 at = max(middle + clear, at + shortest)

@@ -32,6 +32,11 @@ def test_few_and_many_clouds_cover_what_they_should(kind, cover):
     assert is_covered(depths, DEFAULTS[kind].optical_depth).mean() == pytest.approx(cover, abs=0.02)
 
 
+def test_a_deck_much_deeper_than_its_cells_has_its_little_cover_too():
+    clouds = field("altocumulus", cover=0.02, depth=0.5, size=0.1, optical_depth=200.0)
+    assert is_covered(column_depths(clouds, 151), 200.0).mean() == pytest.approx(0.02, abs=0.01)
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_full_cover_leaves_no_gap(kind):
     depths = column_depths(field(kind, cover=1.0), 113)
