@@ -17,6 +17,7 @@ from skybake.scattering.closure import close_field
 from skybake.scattering.field import (
     DiffuseField,
     altitude_layers,
+    steep_twilight,
     sun_bins,
     sun_factors,
     twilight_scale,
@@ -185,6 +186,7 @@ def _from_arrays(medium: Medium, arrays: dict[str, Any]) -> Atmosphere:
         sun_bin=sun_bins(arrays["sun_angle"]),
         sun_factor=sun_factors(arrays["sun_angle"], twilight),
         twilight=twilight,
+        steep_from=steep_twilight(medium),
         source=arrays["source"],
         radiance=arrays["radiance"],
         ground=arrays["ground"],

@@ -23,6 +23,9 @@ ORDINARY_DIP = math.radians(5.0)
 """Dip of the horizon at the top of the atmosphere below which twilight is shorter in proportion; of
 the presets Jupiter's is the least, 5.2. [rad]"""
 
+STEEP_DIPS = 0.5
+"""Depression of the sun, in dips of the horizon, beyond which twilight can end within a node."""
+
 TWILIGHT_SLOPE = 40.0
 TWILIGHT_ONSET = math.radians(5.0)
 TWILIGHT_END = math.radians(30.0)
@@ -53,6 +56,8 @@ class DiffuseField(NamedTuple):
         What of `sun_weights` does not depend on the sun, see there.
     twilight : float
         `twilight_scale` of the atmosphere.
+    steep_from : float
+        `steep_twilight` of the atmosphere. [rad]
     source : ndarray of float64, shape (constituent, order + 1, wavelength)
         Scattering coefficient times chi_l at density 1. [km⁻¹]
     radiance : ndarray of float32, shape (altitude, sun, harmonic, wavelength)
@@ -68,6 +73,7 @@ class DiffuseField(NamedTuple):
     sun_bin: npt.NDArray[np.int64]
     sun_factor: Array
     twilight: float
+    steep_from: float
     source: Array
     radiance: npt.NDArray[np.float32]
     ground: Array
@@ -76,6 +82,17 @@ class DiffuseField(NamedTuple):
 def twilight_scale(medium: Medium) -> float:
     """How long twilight is beside an ordinary one, by the dip of the horizon at the top."""
     return min(1.0, math.acos(medium.r_bottom / medium.r_top) / ORDINARY_DIP)
+
+
+def steep_twilight(medium: Medium) -> float:
+    """Solar zenith angle beyond which light is linear between suns, not cubic; infinite if never.
+
+    The twilight of shallow air can end within a node, and cubics through such an end swing
+    below 0.
+    """
+    if twilight_scale(medium) == 1.0:
+        return math.inf
+    return 0.5 * math.pi + STEEP_DIPS * math.acos(medium.r_bottom / medium.r_top)
 
 
 def altitude_layers(medium: Medium, altitude: Array) -> Array:
@@ -198,12 +215,16 @@ def sun_weights(field, mu_s, out):
     """First node and weights of the four nodes around a sun's position.
 
     Lagrange's cubic through the values divided by exp(log_twilight), which differ
-    little from node to node even where twilight falls by half between them.
+    little from node to node even where twilight falls by half between them; linear
+    beyond `steep_from`.
     """
     angle = min(fast_acos(mu_s), field.sun_angle[-1])
     j = field.sun_bin[min(int(angle * (ANGLE_BINS / math.pi)), ANGLE_BINS - 1)]
     while angle > field.sun_angle[j + 2] and j + 4 < field.sun_angle.size:
         j += 1
+    if angle > field.steep_from:
+        _fill_linear_weights(field, angle, j, out)
+        return j
     xa, xb = angle - field.sun_angle[j], angle - field.sun_angle[j + 1]
     xc, xd = angle - field.sun_angle[j + 2], angle - field.sun_angle[j + 3]
     here = fast_exp(log_twilight(angle, field.twilight)) if angle > 0.5 * math.pi else 1.0
@@ -213,6 +234,18 @@ def sun_weights(field, mu_s, out):
     out[2] = field.sun_factor[j, 2] * xd * low
     out[3] = field.sun_factor[j, 3] * xc * low
     return j
+
+
+@kernel
+def _fill_linear_weights(field, angle, j, out):
+    """Write the weights of the two of four nodes that are on either side of a sun's position."""
+    out[0] = out[1] = out[2] = out[3] = 0.0
+    i = 1 if angle <= field.sun_angle[j + 2] else 2
+    low, high = field.sun_angle[j + i], field.sun_angle[j + i + 1]
+    share = (angle - low) / (high - low)
+    dark = log_twilight(angle, field.twilight)
+    out[i] = (1.0 - share) * fast_exp(dark - log_twilight(low, field.twilight))
+    out[i + 1] = share * fast_exp(dark - log_twilight(high, field.twilight))
 
 
 @kernel

@@ -13,6 +13,7 @@ from skybake.optics.medium import Array, Medium, vertical_optical_depth
 from skybake.scattering.field import (
     DiffuseField,
     altitude_layers,
+    steep_twilight,
     sun_bins,
     sun_factors,
     twilight_scale,
@@ -180,6 +181,7 @@ def empty_field(
         sun_bin=sun_bins(sun_angle),
         sun_factor=sun_factors(sun_angle, twilight),
         twilight=twilight,
+        steep_from=steep_twilight(scaled.medium),
         source=np.ascontiguousarray(
             scaled.medium.scattering[:, None] * scaled.moments[:, : order + 1]
         ),

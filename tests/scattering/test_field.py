@@ -54,12 +54,13 @@ def test_sun_angles_are_denser_than_a_degree_about_the_horizon():
 @pytest.mark.parametrize("field", [FIELD, field_of_dip(0.3)], ids=["ordinary", "shallow"])
 @given(mu_s=st.floats(-1.0, 1.0))
 def test_sun_weights_restore_every_cubic_times_the_decline_of_twilight(field, mu_s):
+    """Every line in the steep twilight of shallow air."""
     weights, angles = np.empty(4), field.sun_angle
     j = sun_weights(field, mu_s, weights)
     angle = min(fast_acos(mu_s), angles[-1])
     log = [log_twilight(each, field.twilight) for each in (*angles[j : j + 4], angle)]
     decline = np.exp(np.array(log[:4]) - log[4])
-    for power in range(4):
+    for power in range(4 if angle <= field.steep_from else 2):
         got = weights @ (decline * angles[j : j + 4] ** power)
         assert got == pytest.approx(angle**power, rel=2e-6, abs=2e-6)
 
@@ -99,6 +100,14 @@ def test_no_node_is_magnified_where_the_nodes_of_night_are_far_apart(last):
 
 def test_no_node_is_magnified_in_shallow_air_either():
     assert greatest_weights(field_of_dip(0.3)) < 2.0
+
+
+def test_no_weight_is_negative_where_the_twilight_of_shallow_air_can_end_within_a_node():
+    field, weights = field_of_dip(0.3), np.empty(4)
+    begin = math.pi / 2.0 + math.radians(0.16)
+    for angle in np.linspace(begin, field.sun_angle[-1], 2001):
+        sun_weights(field, math.cos(angle), weights)
+        assert weights.min() >= 0.0
 
 
 def greatest_weights(field):
