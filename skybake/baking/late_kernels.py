@@ -51,7 +51,7 @@ def compile_kernels() -> None:
     columns, visible = np.zeros((0, seen.density.shape[1])), np.zeros(0, np.bool_)
     fill_sight_columns(seen, table, seen.r_bottom, mu, columns, visible)
     rows, curves = np.zeros((2, 4, 12), np.float32), np.zeros((2, 1), np.float32)
-    view = FoldedTable(0.0, 1.5, 1.0, rows, curves)
+    view = FoldedTable(0.0, 1.5, 1.0, rows, curves, False)
     pixels = np.zeros((0, 1, 3), np.float32)
     place = np.zeros((1, 1))
     fill_directions(view, place, place, place, 0, 0, allocate_pixels(view, 1), pixels)

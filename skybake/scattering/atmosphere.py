@@ -21,7 +21,14 @@ from skybake.optics.medium import Medium, pad_wavelengths
 from skybake.optics.phase_basis import PhaseBasis, build_phase_basis
 from skybake.scattering.aureole import Aureole, no_aureole
 from skybake.scattering.closure import close_field
-from skybake.scattering.field import DiffuseField, altitude_layers, sun_bins, sun_factors
+from skybake.scattering.field import (
+    DiffuseField,
+    altitude_layers,
+    steep_twilight,
+    sun_bins,
+    sun_factors,
+    twilight_scale,
+)
 from skybake.scattering.grid import ORDER, no_field
 from skybake.scattering.harmonics import build_harmonics
 from skybake.scattering.solver import solve_light
@@ -170,13 +177,16 @@ def _from_arrays(medium: Medium, arrays: dict[str, Any]) -> Atmosphere:
         extinction=arrays["scaled_extinction"],
         phase=delta_m_arrays["phase"][:constituents],
     )
+    twilight = twilight_scale(medium)
     field = DiffuseField(
         harmonics=build_harmonics(int(arrays["order"])),
         altitude=arrays["altitude"],
         layer=altitude_layers(scaled, arrays["altitude"]),
         sun_angle=arrays["sun_angle"],
         sun_bin=sun_bins(arrays["sun_angle"]),
-        sun_factor=sun_factors(arrays["sun_angle"]),
+        sun_factor=sun_factors(arrays["sun_angle"], twilight),
+        twilight=twilight,
+        steep_from=steep_twilight(medium),
         source=arrays["source"],
         radiance=arrays["radiance"],
         ground=arrays["ground"],

@@ -59,6 +59,7 @@ DIVERGED = 0.5
 """Relative change that no iteration which will converge shows after `SURE_PASSES`."""
 
 SURE_PASSES = 40
+"""Passes after which what is left, such as twilight far darker than the day, is mixed by itself."""
 
 ARC = math.radians(2.0)
 FIRST_ARC = math.radians(2.0)
@@ -155,9 +156,13 @@ def _settle(
             # The first step is not mixed yet: the ratio is what one scattering leaves.
             left = float(change[:sunlit].max()) / max(previous, 1e-30)
             left = min(max(left, 1e-3), 0.9999)
-        state = mixing.step(state, image)
         # In a thick atmosphere a small change is not a small error.
-        if turn > 0 and change.max() < max(COARSE_TOLERANCE * (1.0 - left) / left, LEAST_CHANGE):
+        least = max(COARSE_TOLERANCE * (1.0 - left) / left, LEAST_CHANGE) if turn > 0 else 0.0
+        if turn == SURE_PASSES:
+            mixing = Anderson(wavelengths)
+        weight = _unsettled(image - state, change, 0.5 * least) if turn >= SURE_PASSES else None
+        state = mixing.step(state, image, weight)
+        if change.max() < least:
             return _field(new, state)
         if not np.isfinite(change).all() or (turn >= SURE_PASSES and change.max() > DIVERGED):
             break
@@ -174,6 +179,15 @@ def _relative(change: Array, state: Array, grid: Grid) -> Array:
     least = np.tile(np.maximum(DARKEST * brightest, 1e-30), len(size) // wavelengths)
     relative: Array = np.linalg.norm(change[judged], axis=1) / np.maximum(size, least)
     return relative
+
+
+def _unsettled(change: Array, relative: Array, least: float) -> Array:
+    """Weights of the rows whose relative change is above the least, by which all count the same."""
+    weight = np.zeros(len(change))
+    size = np.linalg.norm(change[: len(relative)], axis=1).astype(float)
+    is_left = relative > least
+    weight[: len(relative)][is_left] = (relative[is_left] / size[is_left]) ** 2
+    return weight
 
 
 def _no_convergence(passes: int, tolerance: float, change: float) -> TooThickError:
