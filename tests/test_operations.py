@@ -28,7 +28,7 @@ def work(monkeypatch):
             counts["fans"] += fans
             counts["samples"] += int(_plain(arguments[6]).number[:fans].sum())
         elif name == "add_diffuse":
-            counts["fans scattered"] += arguments[5] - arguments[4]
+            counts["fans scattered"] += arguments[6] - arguments[5]
         elif name == "fill_directions":
             rows, columns, _ = arguments[-1].shape
             counts["pixels"] += rows * columns
