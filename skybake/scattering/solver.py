@@ -32,6 +32,9 @@ DARKEST = 1e-7
 """Of the field under the brightest sun: the least that a change is compared with. Where light falls
 faster than this from one sun to the next, rounding of the brighter is all that is left."""
 
+FAINTEST = 1e-9
+"""Of the field under the brightest sun: the least that passes are mixed in units of."""
+
 MAX_PASSES = 20
 MAX_COARSE_PASSES = 400
 
@@ -73,8 +76,8 @@ def solve_light(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> Atmosphe
     is iterated. The light that the last pass changed is followed through all its
     further scatterings in a field of few harmonics, where a pass costs a quarter
     (diffusion synthetic acceleration, with `COARSE_ORDER` for the diffusion): what
-    takes many scatterings to settle is smooth. Two passes in between settle what is
-    not.
+    takes many scatterings to settle is smooth. What is not, passes settle one by one, which are
+    mixed (Anderson) with each sun's light in units of its own, so that twilight counts as day does.
 
     References
     ----------
@@ -97,15 +100,17 @@ def solve_light(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> Atmosphe
 
     new = lower_order(first, COARSE_ORDER)
     field = raise_order(settle(new, new), new, first)
-    for _ in range(MAX_PASSES // 2):
-        scattered, _ = scatter_field(scaled, field, grid, rays, workers)
-        once = sum_fields(first, scattered, 1.0)
-        scattered, radiance = scatter_field(scaled, once, grid, rays, workers)
-        twice = sum_fields(first, scattered, 1.0)
-        total = lower_order(twice, COARSE_ORDER)
-        new = sum_fields(total, lower_order(once, COARSE_ORDER), -1.0)
+    scattered, _ = scatter_field(scaled, field, grid, rays, workers)
+    field = sum_fields(first, scattered, 1.0)
+    mixing, unit = Anderson(scaled.mixture.size), _brightness(field)
+    for _ in range(MAX_PASSES):
+        scattered, radiance = scatter_field(scaled, field, grid, rays, workers)
+        image = sum_fields(first, scattered, 1.0)
+        total = lower_order(image, COARSE_ORDER)
+        new = sum_fields(total, lower_order(field, COARSE_ORDER), -1.0)
         settled = settle(new, total)
-        field = raise_order(settled, new, twice)
+        image = raise_order(settled, new, image)
+        field = _field(image, mixing.step(_state(field) / unit, _state(image) / unit) * unit)
         change = _relative(_state(settled) - _state(new), _state(total), grid)
         if change.max() < TOLERANCE:
             if has_aureole(atmosphere):
@@ -175,6 +180,12 @@ def _no_convergence(passes: int, tolerance: float, change: float) -> TooThickErr
         f"multiple scattering: must converge to a relative change of {tolerance:g}, "
         f"got {change:.2g} after {passes} passes"
     )
+
+
+def _brightness(field: DiffuseField) -> Array:
+    """Size of a field's state under each sun and at each wavelength, (row, 1); never 0."""
+    size = np.linalg.norm(_state(field), axis=1)[:, None]
+    return np.maximum(size, max(FAINTEST * float(size.max()), 1e-30))
 
 
 def _state(field: DiffuseField) -> Array:
