@@ -185,7 +185,8 @@ def _no_convergence(passes: int, tolerance: float, change: float) -> TooThickErr
 def _brightness(field: DiffuseField) -> Array:
     """Size of a field's state under each sun and at each wavelength, (row, 1); never 0."""
     size = np.linalg.norm(_state(field), axis=1)[:, None]
-    return np.maximum(size, max(FAINTEST * float(size.max()), 1e-30))
+    brightness: Array = np.maximum(size, max(FAINTEST * float(size.max()), 1e-30))
+    return brightness
 
 
 def _state(field: DiffuseField) -> Array:
