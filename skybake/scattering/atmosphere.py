@@ -31,6 +31,7 @@ from skybake.scattering.field import (
 )
 from skybake.scattering.grid import ORDER, no_field
 from skybake.scattering.harmonics import build_harmonics
+from skybake.scattering.horizon_peaks import HorizonPeaks, no_horizon_peaks
 from skybake.scattering.solver import solve_light
 from skybake.scattering.table_shapes import are_tables_of
 from skybake.scattering.tables import Atmosphere
@@ -80,6 +81,7 @@ def dark_atmosphere(medium: Medium, method: str, workers: Workers = ALL_CPUS) ->
         columns=build_columns(padded, workers=workers),
         field=no_field(scaled),
         aureole=no_aureole(scaled),
+        horizon_peaks=no_horizon_peaks(scaled),
         basis=build_phase_basis(
             scaled.phase[..., : medium.ground_albedo.size], phase_groups(scaled)
         ),
@@ -162,6 +164,7 @@ def _to_arrays(atmosphere: Atmosphere) -> dict[str, Any]:
         "radiance": field.radiance,
         "ground": field.ground,
         "aureole": atmosphere.aureole.source,
+        "horizon_peaks": atmosphere.horizon_peaks.source,
         "basis_curves": atmosphere.basis.curves,
         "basis_weights": atmosphere.basis.weights,
     }
@@ -198,5 +201,6 @@ def _from_arrays(medium: Medium, arrays: dict[str, Any]) -> Atmosphere:
         columns=arrays["columns"],
         field=field,
         aureole=Aureole(arrays["aureole"]),
+        horizon_peaks=HorizonPeaks(arrays["horizon_peaks"]),
         basis=PhaseBasis(arrays["basis_curves"], arrays["basis_weights"]),
     )
