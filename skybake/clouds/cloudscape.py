@@ -340,7 +340,7 @@ class Cloudscape:
         out = np.empty_like(total)
         opacity = np.empty(zenith.size, np.float32)
         flat = [flatten(each) for each in (total, row, weight, distance, lit, through, seen)]
-        angles = [flatten(np.require(each, float, "CAW")) for each in (zenith, bearing)]
+        angles = [flatten(np.require(each, float, ["C", "A", "W"])) for each in (zenith, bearing)]
         fill_places(*angles, self.first, self.horizon, NODE_ROWS, NODE_COLUMNS, False, *flat[1:3])
 
         def work(first: int, last: int) -> None:

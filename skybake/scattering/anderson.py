@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from skybake.optics.medium import Array
 
@@ -33,10 +35,12 @@ class Anderson:
 
     def __init__(self, systems: int) -> None:
         self._systems = systems
-        self._states: list[Array] = []
-        self._images: list[Array] = []
+        self._states: list[npt.NDArray[Any]] = []
+        self._images: list[npt.NDArray[Any]] = []
 
-    def step(self, state: Array, image: Array, weight: Array | None = None) -> Array:
+    def step(
+        self, state: npt.NDArray[Any], image: npt.NDArray[Any], weight: Array | None = None
+    ) -> Array:
         """Next state from a state and its image under one pass, each (row, unknown).
 
         Parameters
