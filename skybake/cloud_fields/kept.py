@@ -47,7 +47,9 @@ def _from_arrays(arrays: dict[str, Any]) -> CloudField:
     Built or read, the arrays are of one layout: kernels would be compiled anew for another.
     """
     plain = {
-        name: np.require(value, requirements="CAW") if np.ndim(value) else np.asarray(value).item()
+        name: np.require(value, requirements=["C", "A", "W"])
+        if np.ndim(value)
+        else np.asarray(value).item()
         for name, value in arrays.items()
     }
     return CloudField(**plain)

@@ -243,12 +243,14 @@ class Cloudscape:
         passing = np.empty((len(self.layers), len(directions), 3), np.float32)
         for k, (layer, solved) in enumerate(zip(self.layers, self.solved, strict=True)):
             is_surface = layer.field.kind == SURFACE
+            # Voxels of light are finer than those of the field there.
+            is_deck = layer.grid.extinction.shape[1:] == (1, 1)
             across = float(layer.grid.spacing[2])
             marching = Marching(
                 depth=self.depth,
                 shortest=SHORTEST if is_surface else 0.2 * float(layer.grid.spacing[0]),
                 longest=0.5 * across,
-                taps=TAPS[not is_surface],
+                taps=0 if is_deck else TAPS[not is_surface],
                 reach=REACH[not is_surface] * across,
                 pixel=pixel,
             )
@@ -338,7 +340,7 @@ class Cloudscape:
         out = np.empty_like(total)
         opacity = np.empty(zenith.size, np.float32)
         flat = [flatten(each) for each in (total, row, weight, distance, lit, through, seen)]
-        angles = [flatten(np.require(each, float, "CAW")) for each in (zenith, bearing)]
+        angles = [flatten(np.require(each, float, ["C", "A", "W"])) for each in (zenith, bearing)]
         fill_places(*angles, self.first, self.horizon, NODE_ROWS, NODE_COLUMNS, False, *flat[1:3])
 
         def work(first: int, last: int) -> None:

@@ -42,7 +42,7 @@ DARK = 1e-9
 fifth of that of the sky in a dark night."""
 
 UNDERSHOOT = 0.01
-"""Of the brightest luminance: the most that interpolation may be below 0; it is 0 then."""
+"""Of the brightest luminance: the most that cubics may be below 0; it is 0 then."""
 
 PROBE_ZENITHS = 192
 PROBE_AZIMUTHS = 256
@@ -194,7 +194,11 @@ class Scene:
 
     @cached_property
     def _surveyed(self) -> tuple[FoldedTable, np.ndarray]:
-        """The table and its survey; where few azimuths ring at a sharp shadow, of all of them."""
+        """The table and its survey.
+
+        Where few azimuths ring at a sharp shadow the table has all of them, and where cubics
+        swing far below 0 beside its edge, between rays that are sound, it is linear.
+        """
         table = self._stages.folded_table(self.sky, self.rgb_weights)
         survey = self._survey(table)
         least, most = self._range(survey, self.luminance)
@@ -202,9 +206,12 @@ class Scene:
             table = self._stages.folded_table(self.sky, self.rgb_weights, finely=True)
             survey = self._survey(table)
             least, most = self._range(survey, self.luminance)
-            # Cubics between rays that are sound swing a little below 0 beside a shadow's edge.
-            if self._has_sound_rays() and least > -UNDERSHOOT * most:
-                least = 0.0
+            if least < -self._rounding(most) and self._has_sound_rays():
+                if least < -UNDERSHOOT * most:
+                    table = table._replace(is_linear=True)
+                    survey = self._survey(table)
+                    least, most = self._range(survey, self.luminance)
+                least = 0.0 if least > -UNDERSHOOT * most else least
         if least < -self._rounding(most):
             raise UnsolvableError(
                 "light: luminance must be at least 0 beside a brightest one of "

@@ -15,6 +15,7 @@ from skybake.errors import InputError, UnsolvableError
 from skybake.image.light import light_of_scene
 from skybake.image.scene import DARK, ROUNDING, Scene, luminous_weights
 from skybake.image.settings import Clouds, Lighting, MapSettings, View
+from skybake.inspect.clouded import clouded_light
 from skybake.inspect.traced import traced_radiance
 from skybake.optics.medium import Array
 from skybake.preset import Planet
@@ -182,10 +183,20 @@ def _radiance(
     if method == REFERENCE:
         zenith, azimuth = directions.zenith, directions.azimuth
         return traced_radiance(planet, sky, zenith, azimuth, samples, clouds.time)
+    clouded = _clouded(planet, sky, directions, np.eye(sky.wavelengths.size), clouds)
+    if clouded is not None:
+        return _without_rounding(clouded), None
     sun_zenith = sky.source.zenith
     mu, sine = np.cos(directions.zenith), np.sin(directions.zenith)
     nu = cosine_between(mu, sine, math.cos(sun_zenith), math.sin(sun_zenith), directions.azimuth)
     return _without_rounding(sky.radiance_per_irradiance(mu, nu)), None
+
+
+def _clouded(
+    planet: Planet, sky: Sky, directions: Directions, weights: Array, clouds: Clouds
+) -> Array | None:
+    zenith, azimuth = directions.zenith, directions.azimuth
+    return clouded_light(planet, sky, zenith, azimuth, weights, clouds)
 
 
 def _without_rounding(radiance: Array) -> Array:
@@ -208,7 +219,7 @@ def _colour(
     method: str,
     samples: int,
     clouds: Clouds,
-    values: Array,
+    values: Array | None,
 ) -> dict[str, Array]:
     """Luminance and chromaticity, from the renderer's own wavelengths."""
     own = np.array(planet.wavelengths or WAVELENGTHS)
@@ -221,8 +232,14 @@ def _colour(
             sun_distance=sky.sun_distance,
             method=sky.method,
         )
-        values, _ = _radiance(planet, sky, directions, method, samples, clouds)
-    xyz = values @ luminous_weights(sky)
+        values = None
+    weights = luminous_weights(sky)
+    # Three channels instead of many wavelengths.
+    xyz = None if method == REFERENCE else _clouded(planet, sky, directions, weights, clouds)
+    if xyz is None:
+        if values is None:
+            values, _ = _radiance(planet, sky, directions, method, samples, clouds)
+        xyz = values @ weights
     total = xyz.sum(axis=1)
     total[total == 0.0] = math.nan
     return {
