@@ -1,6 +1,7 @@
-"""Makes the pictures of clouds.md: ``python docs/make_clouds.py [draft|normal|high]``, in minutes.
+"""Makes the pictures of clouds.md: ``python docs/make_clouds.py``, in some minutes.
 
-Each sky as an equirect map and as a camera sees it, exposed by itself. Needs Pillow.
+Each sky as an equirect map and as a camera sees it, exposed by itself. Another quality than
+``normal`` may follow, as ``draft``, and names of sheets, if not all are to be made. Needs Pillow.
 """
 
 from __future__ import annotations
@@ -82,11 +83,11 @@ SHEETS = {
 }
 
 
-def main(quality: str) -> None:
+def main(quality: str = "normal", *names: str) -> None:
     """Draw each sheet and write it."""
-    for name, shots in SHEETS.items():
+    for name in names or SHEETS:
         tiles = {}
-        for title, shot in shots.items():
+        for title, shot in SHEETS[name].items():
             tiles[title] = pictures(shot, quality)
             print(title, flush=True)
         sheet(tiles).save(IMAGES / f"{name}.jpg", quality=LOSSY, optimize=True)
@@ -141,4 +142,4 @@ def sheet(tiles: dict[str, tuple[Image.Image, Image.Image]]) -> Image.Image:
 
 
 if __name__ == "__main__":
-    main(*(sys.argv[1:] or ["normal"]))
+    main(*sys.argv[1:])
