@@ -20,6 +20,7 @@ from skybake.preset import load_preset
 from skybake.scattering.fans import group_rays
 from skybake.scattering.grid import ORDER, empty_field, sun_angles
 from skybake.scattering.harmonics import fill_each, harmonics_at
+from skybake.scattering.horizon_peaks import no_horizon_peaks
 from skybake.scattering.multiple import add_diffuse, allocate_scratch, side_by_side
 from skybake.sky.disc import fill_sight_columns
 from skybake.sky.pixels import allocate_pixels, fill_directions
@@ -46,12 +47,13 @@ def compile_kernels() -> None:
     light = np.zeros((0, scaled.medium.ground_albedo.size), np.float32)
     rays = group_rays(np.zeros((1, 4)))
     samples, scratch = allocate_samples(scaled.medium), allocate_scratch(field, rays)
-    add_diffuse(field, side_by_side(field), scaled.medium, rays, 0, 0, samples, scratch, light)
+    sources = field, side_by_side(field), no_horizon_peaks(scaled), scaled
+    add_diffuse(*sources, rays, 0, 0, samples, scratch, light)
     table, mu = np.zeros((1, 1, 1)), np.zeros(0)
     columns, visible = np.zeros((0, seen.density.shape[1])), np.zeros(0, np.bool_)
     fill_sight_columns(seen, table, seen.r_bottom, mu, columns, visible)
     rows, curves = np.zeros((2, 4, 12), np.float32), np.zeros((2, 1), np.float32)
-    view = FoldedTable(0.0, 1.5, 1.0, rows, curves)
+    view = FoldedTable(0.0, 1.5, 1.0, rows, curves, False)
     pixels = np.zeros((0, 1, 3), np.float32)
     place = np.zeros((1, 1))
     fill_directions(view, place, place, place, 0, 0, allocate_pixels(view, 1), pixels)

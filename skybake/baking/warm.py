@@ -12,7 +12,8 @@ import numpy as np
 
 from skybake.baking.late_kernels import compiled_in_background
 from skybake.baking.write import bake
-from skybake.image.settings import Lighting, MapSettings, View
+from skybake.cloud_fields.build import build_field
+from skybake.image.settings import Clouds, Lighting, MapSettings, View
 from skybake.optics.medium import build_medium
 from skybake.preset import Planet, load_preset
 from skybake.projection import Cubemap, Equirect, Fisheye, Perspective
@@ -24,6 +25,9 @@ from skybake.sky.sky import METHODS, WAVELENGTHS, Sky
 SMALL = MapSettings(View(projection=Equirect(16)))
 ORBIT = 400.0
 
+CLOUDY = "earth-fair", "earth-broken", "earth-cirrus"
+"""Presets whose clouds need all kernels that draw some: heaps, decks and trails."""
+
 
 def compile_all() -> None:
     """Bake each kind of map, in small, and trace a few paths."""
@@ -31,6 +35,7 @@ def compile_all() -> None:
     with compiled_in_background(), tempfile.TemporaryDirectory() as folder:
         for number, settings in enumerate(_kinds()):
             bake(planet, Path(folder) / f"{number}.exr", settings)
+        _compile_clouds(Path(folder))
     medium = build_medium(planet, WAVELENGTHS)
     # Tables that are already stored needed no kernels; only dust has an aureole.
     for method in ("full", "hillaire"):
@@ -62,6 +67,16 @@ def solve(names: Iterable[str | Path], notice: Callable[[str], None]) -> None:
         if not sky.is_solved:
             notice(f"solving for the light in the atmosphere of {planet.name}")
             _ = sky.atmosphere
+
+
+def _compile_clouds(folder: Path) -> None:
+    """Draw clouds of each shape, which are kept as well, and bake and trace those of one."""
+    worlds = [load_preset(name) for name in CLOUDY]
+    for world in worlds:
+        for layer in world.clouds:
+            build_field(layer)
+    settings = replace(SMALL, clouds=Clouds(quality="draft"))
+    bake(worlds[0], folder / "clouds.exr", settings)
 
 
 def _kinds() -> list[MapSettings]:

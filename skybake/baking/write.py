@@ -72,6 +72,7 @@ def bake(
     picture: PictureSettings | None = None,
     attributes: Mapping[str, Attribute] | None = None,
     progress: Progress | None = None,
+    stage: Callable[[str], None] | None = None,
     notice: Callable[[str], None] | None = None,
 ) -> Baked:
     """Bake one sky map.
@@ -93,7 +94,9 @@ def bake(
         What the files shall state besides their light and their recipe, such as
         ``{"skybake:time": "2026-06-21T04:00:00Z"}``.
     progress : callable, optional
-        Called with the share that is done, from 0 to 1.
+        Called with the share of the pixels that is done, from 0 to 1.
+    stage : callable, optional
+        Called with the stage that begins: "clouds" of a world that has them, "pixels".
     notice : callable, optional
         Called with a human-readable line when something takes long that later runs need not repeat.
 
@@ -122,6 +125,7 @@ def bake(
         picture=picture,
         attributes=attributes,
         progress=progress,
+        stage=stage,
     )
 
 
@@ -149,6 +153,7 @@ def bake_scene(
     picture: PictureSettings | None = None,
     attributes: Mapping[str, Attribute] | None = None,
     progress: Progress | None = None,
+    stage: Callable[[str], None] | None = None,
     files: WholeFiles | None = None,
     pixel: PixelType | None = None,
 ) -> Baked:
@@ -159,6 +164,11 @@ def bake_scene(
     """
     planet, settings = scene.planet, scene.settings
     paths = map_paths(output, settings)
+    _ = scene.sun  # which can be refused, before what takes long
+    if planet.clouds:
+        _tell(stage, "clouds")
+        scene.light_clouds()
+    _tell(stage, "pixels")
     light = light_of_scene(scene)
     attributes = {
         **attributes_from_light(light),
@@ -215,6 +225,11 @@ def bake_scene(
         clamped=sum(writer.clamped for writer in writers.values()),
         warnings=tuple(warnings),
     )
+
+
+def _tell(stage: Callable[[str], None] | None, name: str) -> None:
+    if stage is not None:
+        stage(name)
 
 
 def _write(

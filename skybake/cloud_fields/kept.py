@@ -29,9 +29,9 @@ def kept_field(name: str, shape: tuple[float, ...], build: Callable[..., CloudFi
     arrays = read_tables(key)
     if arrays is not None and set(arrays) == set(CloudField._fields):
         return _from_arrays(arrays)
-    field = build(*shape)
-    write_tables(key, field._asdict())
-    return field
+    arrays = build(*shape)._asdict()
+    write_tables(key, arrays)
+    return _from_arrays(arrays)
 
 
 def _key(name: str, shape: tuple[float, ...]) -> str:
@@ -42,6 +42,14 @@ def _key(name: str, shape: tuple[float, ...]) -> str:
 
 
 def _from_arrays(arrays: dict[str, Any]) -> CloudField:
-    """Return a field whose numbers were kept as arrays without an axis."""
-    plain = {name: array if array.ndim else array.item() for name, array in arrays.items()}
+    """Return a field of arrays, in which numbers may be arrays without an axis.
+
+    Built or read, the arrays are of one layout: kernels would be compiled anew for another.
+    """
+    plain = {
+        name: np.require(value, requirements=["C", "A", "W"])
+        if np.ndim(value)
+        else np.asarray(value).item()
+        for name, value in arrays.items()
+    }
     return CloudField(**plain)

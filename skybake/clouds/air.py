@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.jit.kept import Kept
+from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.medium import Array, Medium
 from skybake.optics.phase import eval_phase
 from skybake.scattering.atmosphere import atmosphere_key, dark_atmosphere
@@ -157,7 +157,8 @@ class ClearAir:
         """Light that a ground of albedo `BRIGHT` would add, shape (n, wavelength). [sr⁻¹]"""
         rays = self._starts(altitude, directions[:, 2], sun, directions @ sun)
         dark, bright = (_trace(each, rays, self.workers).diffuse for each in self._closures)
-        return bright - dark
+        more: Array = bright - dark
+        return more
 
     def over_bright_spans(
         self, altitude: float, directions: Array, distances: Array, sun: Array
@@ -171,7 +172,8 @@ class ClearAir:
             trace_segments(each, *rays, ends, workers=self.workers).diffuse[..., :count]
             for each in self._closures
         )
-        return bright.astype(float) - dark
+        more: Array = bright.astype(float) - dark
+        return more
 
     @cached_property
     def _closures(self) -> tuple[Atmosphere, Atmosphere]:

@@ -71,7 +71,7 @@ class Dimming(NamedTuple):
 def shadowed_stretch(
     altitude: float, directions: Array, radius: float, top: float
 ) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
-    """Where rays are below the top of clouds: begin, end [km], and whether the end is the ground."""
+    """Where rays are below the tops of clouds, [km], and whether they end on the ground."""
     r, slope = radius + altitude, directions[:, 2]
     b = r * slope
     chord = b * b - (altitude - top) * (2.0 * radius + altitude + top)
@@ -204,43 +204,49 @@ def fill_lit(
         for c in range(channels):
             gathered = 0.0
             for q in range(stretches + 2):
-                single = diffuse = glow = passes = distance = 0.0
-                for p in range(4):
-                    i, w = row[n, p], weight[n, p]
-                    if w == 0.0:
-                        continue
-                    single += w * table.single[i, q, c]
-                    diffuse += w * table.diffuse[i, q, c]
-                    glow += w * table.glow[i, q, c]
-                    if q > 0:
-                        single -= w * table.single[i, q - 1, c]
-                        diffuse -= w * table.diffuse[i, q - 1, c]
-                        glow -= w * table.glow[i, q - 1, c]
-                    if q <= stretches:
-                        passes += w * table.transmittance[i, q, c]
-                        distance += w * table.distance[i, q]
-                        if q > 0:
-                            distance += w * table.distance[i, q - 1]
-                if q == 0 or q > stretches:
+                single = _gained(table.single, row[n], weight[n], q, c)
+                diffuse = _gained(table.diffuse, row[n], weight[n], q, c)
+                gathered += _gained(table.glow, row[n], weight[n], q, c)
+                if 0 < q <= stretches:
                     # Before and beyond all clouds the sun shines.
-                    gathered += single + diffuse + glow
-                else:
-                    s = 0.5 * distance
+                    s = _middle(table.distance, row[n], weight[n], q)
                     r = radius + altitude
                     h = math.sqrt(r * r + s * s + 2.0 * r * s * slope) - radius
-                    dims = dimming_at(dimming, h, c)
-                    gathered += single * visible[n, q - 1] + diffuse * dims + glow
-                if q > stretches:
-                    for p in range(4):
-                        i, w = row[n, p], weight[n, p]
-                        if w > 0.0:
-                            gathered += w * (
-                                table.sunlit[i, c] * visible[n, stretches]
-                                + table.skylit[i, c] * dimming.ground[c]
-                            )
+                    single *= visible[n, q - 1]
+                    diffuse *= dimming_at(dimming, h, c)
+                gathered += single + diffuse
+                if q <= stretches:
+                    through[n, q, c] = _mean(table.transmittance[:, q, c], row[n], weight[n])
                 else:
-                    through[n, q, c] = passes
+                    sunlit = _mean(table.sunlit[:, c], row[n], weight[n])
+                    skylit = _mean(table.skylit[:, c], row[n], weight[n])
+                    gathered += sunlit * visible[n, stretches] + skylit * dimming.ground[c]
                 lit[n, q, c] = gathered
+
+
+@kernel
+def _mean(column, row, weight):
+    """Mean of a table's rows."""
+    total = 0.0
+    for p in range(4):
+        if weight[p] != 0.0:
+            total += weight[p] * column[row[p]]
+    return total
+
+
+@kernel
+def _gained(values, row, weight, q, channel):
+    """Mean of what rows of a table gather between one distance and the next."""
+    total = _mean(values[:, q, channel], row, weight)
+    if q > 0:
+        total -= _mean(values[:, q - 1, channel], row, weight)
+    return total
+
+
+@kernel
+def _middle(distance, row, weight, q):
+    """Distance of the middle of a stretch. [km]"""
+    return 0.5 * (_mean(distance[:, q - 1], row, weight) + _mean(distance[:, q], row, weight))
 
 
 @kernel

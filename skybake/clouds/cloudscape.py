@@ -20,7 +20,8 @@ from skybake.clouds.airlight import (
     shadowed_stretch,
     stretch_ends,
 )
-from skybake.clouds.compose import compose, fill_places
+from skybake.clouds.compose import compose
+from skybake.clouds.directions import fill_places, node_directions, unit_vectors
 from skybake.clouds.layer import (
     Grid,
     SolvedLayer,
@@ -29,10 +30,11 @@ from skybake.clouds.layer import (
     reflectance_of,
     solve_layer,
 )
-from skybake.clouds.march import Marching, allocate_march, fill_march
+from skybake.clouds.march import Marching
 from skybake.clouds.particles import divide_phase
 from skybake.clouds.quadrature import double_gauss
-from skybake.clouds.shadow import dim_visibility
+from skybake.clouds.sight import Eye, dim_rays, see_layer
+from skybake.clouds.suns import suns_over
 from skybake.jit.arguments import flatten
 from skybake.jit.workers import Workers
 from skybake.optics.medium import Array
@@ -45,25 +47,16 @@ TAPS, REACH = (4, 8), (1.0, 2.0)
 """Samples of the detailed field on the first way to the sun, and its length in voxels of light: of
 surfaces, and of voxels whose light is on themselves."""
 
+SHORTEST = 0.012
+"""Step through a surface where nothing is known. [km]"""
+
 TABLE_ROWS, TABLE_COLUMNS = 28, 17
 """Rays of clear air: above the horizon and below it each, and from the sun to its opposite."""
 
 NODE_ROWS, NODE_COLUMNS = 96, 256
 """The same, all around, of places for which shadows are looked up."""
 
-HIGH_SUN, NEAR = math.radians(12.0), math.radians(5.0)
-"""Elevation from which the sun is the same over all clouds of a layer, unless they are seen over
-more than this angle at the planet's centre. [rad]"""
-
-SUNS = tuple(math.radians(each) for each in (-18, -9, -5, -2, 0, 2, 5, 12, 30, 60))
-"""Elevations of suns between which light is interpolated, [rad]"""
-
-CLOSE = math.radians(0.8)
-
 SUN_POINTS = 32
-
-EDGE = 1e-5
-"""Angle by which they stay away from the horizon. [rad]"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,7 +144,7 @@ class Cloudscape:
         for k, (layer, particle) in enumerate(zip(self.layers, particles, strict=True)):
             ground = reflects[k + 1] if k + 1 < len(reflects) else None
             around = Surroundings(sun_share, sky_ratio, ground)
-            suns = self.suns(layer)
+            suns = suns_over(self.sun, self.air.radius, self.altitude, layer.field.top)
             solved = solve_layer(
                 layer.grid, particle, *given, suns, around, reflects[k], self.workers
             )
@@ -161,24 +154,10 @@ class Cloudscape:
             out.append(solved)
         return out
 
-    def suns(self, layer: Layer) -> Array:
-        """Suns over the places at which the observer sees a layer, shape (sun, 3).
-
-        Where clouds are far away the sun stands higher or lower by their angle at the planet's
-        centre, which counts while it is low.
-        """
-        elevation = math.asin(float(np.clip(self.sun[2], -1.0, 1.0)))
-        azimuth = math.atan2(self.sun[0], self.sun[1])
-        away = sum(
-            math.acos(self.air.radius / (self.air.radius + max(h, GROUNDED)))
-            for h in (layer.field.top, self.altitude)
-        )
-        low, high = max(elevation - away, -0.5 * math.pi), min(elevation + away, 0.5 * math.pi)
-        if low > HIGH_SUN and away < NEAR:
-            return self.sun[None]
-        between = [each for each in SUNS if low + CLOSE < each < high - CLOSE]
-        nodes = sorted({low, *between, high})
-        return np.stack([sun_vector(azimuth, each) for each in nodes])
+    @property
+    def eye(self) -> Eye:
+        """Where the observer is."""
+        return Eye(self.air.radius, self.altitude, self.sun)
 
     @property
     def top(self) -> float:
@@ -232,22 +211,7 @@ class Cloudscape:
         """Share of the sun along rays, see `dim_visibility`."""
         out = np.ones(distance.shape, np.float32)
         for layer, solved in zip(self.layers, self.solved, strict=True):
-            given = [flatten(each) for each in (layer.field, solved.light, solved.leaving)]
-            rays = flatten(directions), flatten(distance), flatten(self.sun)
-
-            def work(first: int, last: int, given=given, rays=rays) -> None:  # type: ignore[no-untyped-def]
-                dim_visibility(
-                    *given,
-                    self.air.radius,
-                    self.altitude,
-                    *rays,
-                    first,
-                    last,
-                    np.empty(3),
-                    out,
-                )
-
-            self.workers.run_rows(len(directions), work, chunk=AT_ONCE)
+            dim_rays(layer.field, solved, self.eye, directions, distance, out, self.workers)
         return out
 
     def lit(
@@ -277,46 +241,41 @@ class Cloudscape:
         channels = self.weights.shape[1]
         seen = np.empty((len(self.layers), len(directions), channels), np.float32)
         passing = np.empty((len(self.layers), len(directions), 3), np.float32)
-        rays, sun = flatten(directions), flatten(self.sun)
         for k, (layer, solved) in enumerate(zip(self.layers, self.solved, strict=True)):
             is_surface = layer.field.kind == SURFACE
             # Voxels of light are finer than those of the field there.
             is_deck = layer.grid.extinction.shape[1:] == (1, 1)
+            across = float(layer.grid.spacing[2])
             marching = Marching(
                 depth=self.depth,
-                shortest=0.012 if is_surface else 0.2 * float(layer.grid.spacing[0]),
-                longest=0.5 * float(layer.grid.spacing[2]),
+                shortest=SHORTEST if is_surface else 0.2 * float(layer.grid.spacing[0]),
+                longest=0.5 * across,
                 taps=0 if is_deck else TAPS[not is_surface],
-                reach=REACH[not is_surface] * float(layer.grid.spacing[2]),
+                reach=REACH[not is_surface] * across,
                 pixel=pixel,
             )
-            given = flatten(layer.field), flatten(solved.light)
-
-            def work(first: int, last: int, given=given, marching=marching, k=k) -> None:  # type: ignore[no-untyped-def]
-                fill_march(
-                    *given,
-                    self.air.radius,
-                    self.altitude,
-                    rays,
-                    sun,
-                    marching,
-                    first,
-                    last,
-                    allocate_march(channels, given[1].value.order),
-                    seen[k],
-                    passing[k],
-                )
-
-            self.workers.run_rows(len(directions), work, chunk=AT_ONCE // 8)
+            see_layer(
+                layer.field,
+                solved.light,
+                self.eye,
+                directions,
+                marching,
+                (seen[k], passing[k]),
+                self.workers,
+            )
         return seen, passing
 
     @cached_property
     def nodes(self) -> tuple[AirTable, Floats, Floats, Array]:
-        """Light of the air in all directions: its table, `lit`, `through` and distances at nodes."""
+        """Light of the air in all directions: its table; `lit`, `through`, distances at nodes."""
         sun_azimuth = math.atan2(self.sun[0], self.sun[1])
-        zenith, azimuth = _grid(self.first, self.horizon, TABLE_ROWS, TABLE_COLUMNS, is_half=True)
+        zenith, azimuth = node_directions(
+            self.first, self.horizon, TABLE_ROWS, TABLE_COLUMNS, is_half=True
+        )
         table = self.table(unit_vectors(zenith, azimuth + sun_azimuth))
-        zenith, azimuth = _grid(self.first, self.horizon, NODE_ROWS, NODE_COLUMNS, is_half=False)
+        zenith, azimuth = node_directions(
+            self.first, self.horizon, NODE_ROWS, NODE_COLUMNS, is_half=False
+        )
         directions = unit_vectors(zenith, azimuth)
         row, weight = np.empty((zenith.size, 4), np.int64), np.empty((zenith.size, 4))
         fill_places(
@@ -381,7 +340,7 @@ class Cloudscape:
         out = np.empty_like(total)
         opacity = np.empty(zenith.size, np.float32)
         flat = [flatten(each) for each in (total, row, weight, distance, lit, through, seen)]
-        angles = flatten(np.ascontiguousarray(zenith)), flatten(np.ascontiguousarray(bearing))
+        angles = [flatten(np.require(each, float, ["C", "A", "W"])) for each in (zenith, bearing)]
         fill_places(*angles, self.first, self.horizon, NODE_ROWS, NODE_COLUMNS, False, *flat[1:3])
 
         def work(first: int, last: int) -> None:
@@ -433,32 +392,3 @@ class Cloudscape:
             np.empty(count, np.float32),
         )
         return out.astype(float)
-
-
-def unit_vectors(zenith: Array, bearing: Array) -> Array:
-    """Unit vectors of directions, shape (n, 3): x east, y north, z up."""
-    sine = np.sin(zenith)
-    return np.stack([sine * np.sin(bearing), sine * np.cos(bearing), np.cos(zenith)], axis=-1)
-
-
-def _grid(
-    first: float, horizon: float, rows: int, columns: int, *, is_half: bool
-) -> tuple[Array, Array]:
-    """Zenith angles and azimuths of the nodes of `fill_places`, each of shape (node,)."""
-    x = np.linspace(0.0, 1.0, rows)
-    above = np.minimum(horizon - (horizon - first) * (1.0 - x) ** 2, horizon - EDGE)
-    below = np.maximum(horizon + (math.pi - horizon) * x**2, horizon + EDGE)
-    zenith = np.concatenate([above, below])
-    around = (
-        np.linspace(0.0, math.pi, columns)
-        if is_half
-        else 2.0 * math.pi * np.arange(columns) / columns
-    )
-    zenith, azimuth = np.meshgrid(zenith, around, indexing="ij")
-    return zenith.ravel(), azimuth.ravel()
-
-
-def sun_vector(azimuth: float, elevation: float) -> Array:
-    """Unit vector toward a compass bearing and an elevation: x east, y north, z up."""
-    flat = math.cos(elevation)
-    return np.array([flat * math.sin(azimuth), flat * math.cos(azimuth), math.sin(elevation)])

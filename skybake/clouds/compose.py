@@ -9,51 +9,6 @@ from skybake.jit.kernel import kernel
 
 
 @kernel
-def fill_places(zenith, azimuth, first, horizon, rows, columns, is_half, row, weight):
-    """Write between which nodes of a grid of directions each direction is, and their weights.
-
-    Parameters
-    ----------
-    zenith, azimuth : ndarray of float64, shape (n,)
-        Directions; azimuths from the grid's first column. [rad]
-    first, horizon : float
-        Zenith angles at which air and ground begin. [rad]
-    rows, columns : int
-        Of the grid, above the horizon and below it each.
-    is_half : bool
-        Whether columns go from 0 to pi, both included, or all around.
-    row : ndarray of int64, shape (n, 4)
-        Receives nodes, counted by side, row and column.
-    weight : ndarray of float64, shape (n, 4)
-        Receives their weights.
-    """
-    for n in range(zenith.size):
-        side = 0 if zenith[n] <= horizon else 1
-        if side == 0:
-            x = 1.0 - math.sqrt(max(horizon - zenith[n], 0.0) / (horizon - first))
-        else:
-            x = math.sqrt((zenith[n] - horizon) / (math.pi - horizon))
-        x = min(max(x, 0.0), 1.0) * (rows - 1)
-        i = min(int(x), rows - 2)
-        u = x - i
-        phi = azimuth[n] - 2.0 * math.pi * math.floor(azimuth[n] / (2.0 * math.pi))
-        if is_half:
-            y = min(phi, 2.0 * math.pi - phi) / math.pi * (columns - 1)
-            j = min(int(y), columns - 2)
-            east = j + 1
-        else:
-            y = phi / (2.0 * math.pi) * columns
-            j = min(int(y), columns - 1)
-            east = (j + 1) % columns
-        v = y - j
-        at = (side * rows + i) * columns
-        row[n, 0], row[n, 1] = at + j, at + east
-        row[n, 2], row[n, 3] = at + columns + j, at + columns + east
-        weight[n, 0], weight[n, 1] = (1.0 - u) * (1.0 - v), (1.0 - u) * v
-        weight[n, 2], weight[n, 3] = u * (1.0 - v), u * v
-
-
-@kernel
 def compose(total, row, weight, distance, lit, through, seen, passing, first, last, out, opacity):
     """Put clouds of several layers into the light of the air.
 

@@ -208,7 +208,7 @@ class _Passes:
             for part in (quadrature.downward, quadrature.upward)
         ]
         self._flat_sweeps = [flatten(each) for each in self._sweeps]
-        levels, rows, columns = voxels.extinction.shape
+        _, rows, columns = voxels.extinction.shape
         self._grid = flatten(voxels.extinction), flatten(voxels.beam)
         self._light = entering.sun[0].astype(np.float32)
         half = len(quadrature.weight) // 2
@@ -233,9 +233,8 @@ class _Passes:
             up, down = self._advance(state, image)
             change = _mean_change(state, image, self._cloudy)
             if change > tolerance > 0.0 and number < most:
-                old = state.reshape(1, -1).copy()
-                mixed = anderson.step(old, image.reshape(1, -1).copy())
-                state[...] = mixed.reshape(shape)
+                old, new = (each.reshape(1, -1).copy() for each in (state, image))
+                state[...] = anderson.step(old, new).reshape(shape)
                 continue
             state[...] = image
             if change <= tolerance:
@@ -328,7 +327,8 @@ def merge_pairs(values: Floats) -> Floats:
 
 def _merge_levels(light: Array, levels: int) -> Array:
     padded = np.concatenate([light, light[:, -1:]], axis=1) if light.shape[1] % 2 else light
-    return padded.reshape(len(light), levels, 2).mean(axis=2)
+    merged: Array = padded.reshape(len(light), levels, 2).mean(axis=2)
+    return merged
 
 
 def _spread(coarse: Floats, factor: int, out: Floats) -> None:

@@ -57,12 +57,14 @@ class Grid:
     @property
     def top(self) -> float:
         """Altitude of the highest face. [km]"""
-        return self.base + self.extinction.shape[0] * float(self.spacing[0])
+        height: float = self.extinction.shape[0] * float(self.spacing[0])
+        return self.base + height
 
     @property
     def levels(self) -> Array:
         """Altitudes of the voxels' middles. [km]"""
-        return self.base + (np.arange(self.extinction.shape[0]) + 0.5) * self.spacing[0]
+        middles: Array = (np.arange(self.extinction.shape[0]) + 0.5) * self.spacing[0]
+        return self.base + middles
 
 
 @dataclass(frozen=True, eq=False)

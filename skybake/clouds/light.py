@@ -65,7 +65,7 @@ def sun_share(light, mu_s):
 
 @kernel
 def fill_corners(light, x, y, altitude, corner, weight):
-    """Write indices (z, y, x) of the eight voxels around a point, shape (8, 3), and their weights."""
+    """Write indices of the eight voxels around a point, (8, 3) as z, y, x, and their weights."""
     _, levels, rows, columns, _ = light.volume.shape
     fz = min(max((altitude - light.base) / light.spacing[0] - 0.5, 0.0), levels - 1.0)
     fy, fx = y / light.spacing[1] - 0.5, x / light.spacing[2] - 0.5

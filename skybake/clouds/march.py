@@ -158,24 +158,7 @@ def fill_march(
             if scaled * step > 1.6 * marching.depth and step > 1.01 * shortest:
                 step = max(marching.depth / scaled, shortest)
                 continue
-            near = 0.0
-            sun_x, sun_y, sun_h = x, y, h
-            if marching.taps > 0:
-                reach = marching.reach
-                local = scratch.local[1]
-                for q in range(marching.taps):
-                    s = reach * (q + 0.5) / marching.taps
-                    near += extinction_at(
-                        field, x + s * local[0], y + s * local[1], h + s * local[2], blur
-                    )
-                near *= reach / marching.taps * keep
-                sun_x += reach * local[0]
-                sun_y += reach * local[1]
-                sun_h += reach * local[2]
-            fill_corners(light, sun_x, sun_y, sun_h, scratch.corner, scratch.weight)
-            toward_sun = near + sun_depth(light, place, scratch.corner, scratch.weight)
-            if marching.taps > 0:
-                fill_corners(light, x, y, h, scratch.corner, scratch.weight)
+            toward_sun = _depth_to_sun(field, light, marching, place, x, y, h, blur, scratch)
             fill_diffuse(
                 light,
                 place,
@@ -186,22 +169,9 @@ def fill_march(
                 scratch.diffuse,
             )
             stops = 1.0 - math.exp(-scaled * step)
-            # Depths of all particles, peaks included, of the sun's and of the eye's way.
-            to_sun = toward_sun / keep
-            to_eye = depth + 0.5 * extinction * step
-            sharp = math.exp(-light.fraction * (to_sun + to_eye)) / keep
-            beam = math.exp(-toward_sun)
-            series = min(to_sun, DEEPEST)
             weight = passes * stops
-            fz = (h - light.base) / light.spacing[0] - 0.5
-            for c in range(channels):
-                peak = scratch.peak[c, TERMS - 1]
-                for q in range(TERMS - 2, -1, -1):
-                    peak = peak * series + scratch.peak[c, q]
-                lit = _irradiance(light, place, fz, c) * beam
-                seen[n, c] += weight * (
-                    lit * (scratch.truncated[c] + sharp * peak) + scratch.diffuse[c]
-                )
+            to_eye = depth + 0.5 * extinction * step
+            _add_light(light, place, h, toward_sun, to_eye, weight, scratch, seen[n])
             weighted += weight * middle
             total += weight
             passes *= 1.0 - stops
@@ -215,6 +185,52 @@ def fill_march(
         through[n, 0] = passes
         through[n, 1] = math.exp(-depth) if passes > 0.0 else 0.0
         through[n, 2] = weighted / total if total > 0.0 else 0.0
+
+
+@kernel
+def _depth_to_sun(field, light, marching, place, x, y, h, blur, scratch):
+    """Optical depth toward the sun without forward peaks; leaves the point's own corners."""
+    near = 0.0
+    if marching.taps == 0:
+        fill_corners(light, x, y, h, scratch.corner, scratch.weight)
+        return sun_depth(light, place, scratch.corner, scratch.weight)
+    toward = scratch.local[1]
+    for q in range(marching.taps):
+        s = marching.reach * (q + 0.5) / marching.taps
+        near += extinction_at(field, x + s * toward[0], y + s * toward[1], h + s * toward[2], blur)
+    near *= marching.reach / marching.taps * (1.0 - light.fraction)
+    s = marching.reach
+    fill_corners(
+        light,
+        x + s * toward[0],
+        y + s * toward[1],
+        h + s * toward[2],
+        scratch.corner,
+        scratch.weight,
+    )
+    near += sun_depth(light, place, scratch.corner, scratch.weight)
+    fill_corners(light, x, y, h, scratch.corner, scratch.weight)
+    return near
+
+
+@kernel
+def _add_light(light, place, h, toward_sun, to_eye, weight, scratch, out):
+    """Add what a step sends to the eye: of the sun, and of the diffuse light in `scratch`.
+
+    `to_eye` is the depth of all particles, those of peaks included, and `toward_sun` without them.
+    """
+    keep = 1.0 - light.fraction
+    to_sun = toward_sun / keep
+    sharp = math.exp(-light.fraction * (to_sun + to_eye)) / keep
+    beam = math.exp(-toward_sun)
+    series = min(to_sun, DEEPEST)
+    fz = (h - light.base) / light.spacing[0] - 0.5
+    for c in range(out.size):
+        peak = scratch.peak[c, TERMS - 1]
+        for q in range(TERMS - 2, -1, -1):
+            peak = peak * series + scratch.peak[c, q]
+        lit = _irradiance(light, place, fz, c) * beam
+        out[c] += weight * (lit * (scratch.truncated[c] + sharp * peak) + scratch.diffuse[c])
 
 
 @kernel

@@ -42,7 +42,7 @@ class Quadrature(NamedTuple):
         return slice(len(self.weight) // 2, None)
 
     def flux(self, radiance: Array) -> Array:
-        """Irradiance of a horizontal plane by radiances of one hemisphere, shape (direction, ...)."""
+        """Sum radiances of one hemisphere, (direction, ...), to the irradiance of a level plane."""
         half = len(self.weight) // 2
         weight = self.weight[:half] * np.abs(self.direction[:half, 2])
         flux: Array = np.tensordot(weight, radiance, axes=1)

@@ -112,6 +112,7 @@ def render(**options: Any) -> None:
             picture=picture_from_options(options, options["preview_ev"]) if preview else None,
             attributes=None if moment is None else moment.attributes,
             progress=progress,
+            stage=None if progress is None else progress.begin,
             notice=None if quiet else notice,
         )
     for warning in baked.warnings:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from functools import cache, cached_property
-
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -43,7 +42,7 @@ DARK = 1e-9
 fifth of that of the sky in a dark night."""
 
 UNDERSHOOT = 0.01
-"""Of the brightest luminance: the most that interpolation may be below 0; it is 0 then."""
+"""Of the brightest luminance: the most that cubics may be below 0; it is 0 then."""
 
 PROBE_ZENITHS = 192
 PROBE_AZIMUTHS = 256
@@ -171,6 +170,11 @@ class Scene:
             workers=self.workers,
         )
 
+    def light_clouds(self) -> None:
+        """Solve for the light of clouds, which takes longest, before pixels show them."""
+        if self.cloudscape is not None:
+            _ = self.cloudscape.nodes
+
     @cached_property
     def survey(self) -> np.ndarray:
         """Pixel values of a small equirect map of the sky, shape (SURVEY_ROWS, column, 3).
@@ -190,7 +194,11 @@ class Scene:
 
     @cached_property
     def _surveyed(self) -> tuple[FoldedTable, np.ndarray]:
-        """The table and its survey; where few azimuths ring at a sharp shadow, of all of them."""
+        """The table and its survey.
+
+        Where few azimuths ring at a sharp shadow the table has all of them, and where cubics
+        swing far below 0 beside its edge, between rays that are sound, it is linear.
+        """
         table = self._stages.folded_table(self.sky, self.rgb_weights)
         survey = self._survey(table)
         least, most = self._range(survey, self.luminance)
@@ -198,9 +206,12 @@ class Scene:
             table = self._stages.folded_table(self.sky, self.rgb_weights, finely=True)
             survey = self._survey(table)
             least, most = self._range(survey, self.luminance)
-            # Cubics between rays that are sound swing a little below 0 beside a shadow's edge.
-            if self._has_sound_rays() and least > -UNDERSHOOT * most:
-                least = 0.0
+            if least < -self._rounding(most) and self._has_sound_rays():
+                if least < -UNDERSHOOT * most:
+                    table = table._replace(is_linear=True)
+                    survey = self._survey(table)
+                    least, most = self._range(survey, self.luminance)
+                least = 0.0 if least > -UNDERSHOOT * most else least
         if least < -self._rounding(most):
             raise UnsolvableError(
                 "light: luminance must be at least 0 beside a brightest one of "
@@ -316,19 +327,23 @@ class Scene:
         if pixels.min(initial=0.0) < 0.0 or weights.min() < 0.0:
             pixels[pixels @ weights < 0.0] = 0.0
         if self.cloudscape is not None:
-            return self._with_clouds(pixels, zenith, azimuth, footprint)
+            return self._with_clouds(self.cloudscape, pixels, zenith, azimuth, footprint)
         return pixels
 
     def _with_clouds(
-        self, pixels: np.ndarray, zenith: Array, azimuth: Array, footprint: Array | float
+        self,
+        cloudscape: Cloudscape,
+        pixels: np.ndarray,
+        zenith: Array,
+        azimuth: Array,
+        footprint: Array | float,
     ) -> np.ndarray:
         """Put clouds into pixels, in XYZ: of these none is negative, as ratios of light need."""
-        assert self.cloudscape is not None
         to_rgb = rgb_from_xyz(self.settings.encoding.space)
         xyz = pixels.reshape(-1, 3) @ np.linalg.inv(to_rgb).T.astype(np.float32)
         shape = pixels.shape[:2]
         bearing = np.broadcast_to(azimuth + self.settings.lighting.sun_azimuth, shape).ravel()
-        light, _ = self.cloudscape.put_into(
+        light, _ = cloudscape.put_into(
             xyz,
             np.broadcast_to(zenith, shape).ravel(),
             bearing,

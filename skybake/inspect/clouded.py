@@ -46,7 +46,7 @@ def clouded_light(
         return None
     # Clear skies do not wait for kernels of clouds.
     from skybake.clouds.build import build_cloudscape
-    from skybake.clouds.cloudscape import unit_vectors
+    from skybake.clouds.directions import unit_vectors
 
     directions = unit_vectors(zenith, azimuth + sky.sun_azimuth)
     parts = []

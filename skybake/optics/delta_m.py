@@ -13,7 +13,13 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.optics.legendre import legendre_moments, legendre_polynomials, sum_series
-from skybake.optics.medium import Array, Medium, vertical_columns
+from skybake.optics.medium import (
+    Array,
+    Medium,
+    altitude_nodes,
+    pad_wavelengths,
+    vertical_columns,
+)
 from skybake.optics.phase import scattering_angles
 
 SERIES_ORDER = 400
@@ -112,6 +118,34 @@ def scale_medium(medium: Medium, order: int) -> ScaledMedium:
     return ScaledMedium(
         scaled, moments, peaked, fraction, true_scattering, mixture, np.concatenate([phase, *peaks])
     )
+
+
+def peak_moments(medium: Medium, scaled: ScaledMedium) -> Array:
+    """Legendre moments of the constituents' peaks, (constituent, `SERIES_ORDER` + 1, wavelength).
+
+    Parameters
+    ----------
+    medium : Medium
+        The atmosphere as it is.
+    scaled : ScaledMedium
+        The same without peaks, whose share is the moment up to the order that stayed.
+    """
+    moments = legendre_moments(pad_wavelengths(medium).phase, SERIES_ORDER)
+    moments[:, : scaled.moments.shape[1]] = scaled.fraction[:, None]
+    return moments
+
+
+def peaked_shares(scaled: ScaledMedium, altitude: Array) -> Array:
+    """Shares of constituents in what is scattered by peaked ones at altitudes [km].
+
+    Shape (altitude, constituent, wavelength).
+    """
+    medium = scaled.medium
+    nodes = altitude_nodes(medium.r_bottom, medium.r_top)
+    density = np.stack([np.interp(altitude, nodes, each) for each in medium.density.T], axis=1)
+    share: Array = density[:, :, None] * scaled.scattering + 1e-30 * scaled.scattering
+    share /= np.maximum(share.sum(axis=1, keepdims=True), 1e-300)
+    return share
 
 
 def phase_groups(scaled: ScaledMedium) -> list[list[int]]:

@@ -81,8 +81,8 @@ class Pipeline:
         preset, settings, cancel
             As of `scene`.
         progress : callable, optional
-            Called with the stage, "atmosphere", "sky" or "pixels", and the share of it that
-            is done.
+            Called with the stage, "atmosphere", "sky", "clouds" of a world that has them, or
+            "pixels", and the share of it that is done.
 
         Raises
         ------
@@ -129,10 +129,13 @@ class Pipeline:
 
 def _prepare(scene: Scene, progress: Progress | None) -> None:
     """Compute the stages before the pixels, to report each on its own."""
-    for name, stage in (
+    stages: list[tuple[str, Callable[[], object]]] = [
         ("atmosphere", lambda: scene.sky.atmosphere),
         ("sky", lambda: scene.table),
-    ):
+    ]
+    if scene.planet.clouds:
+        stages.append(("clouds", scene.light_clouds))
+    for name, stage in stages:
         scene.workers.check()
         report = _of_stage(progress, name)
         if report is not None:

@@ -21,9 +21,17 @@ from skybake.optics.medium import Medium, pad_wavelengths
 from skybake.optics.phase_basis import PhaseBasis, build_phase_basis
 from skybake.scattering.aureole import Aureole, no_aureole
 from skybake.scattering.closure import close_field
-from skybake.scattering.field import DiffuseField, altitude_layers, sun_bins, sun_factors
+from skybake.scattering.field import (
+    DiffuseField,
+    altitude_layers,
+    steep_twilight,
+    sun_bins,
+    sun_factors,
+    twilight_scale,
+)
 from skybake.scattering.grid import ORDER, no_field
 from skybake.scattering.harmonics import build_harmonics
+from skybake.scattering.horizon_peaks import HorizonPeaks, no_horizon_peaks
 from skybake.scattering.solver import solve_light
 from skybake.scattering.table_shapes import are_tables_of
 from skybake.scattering.tables import Atmosphere
@@ -73,6 +81,7 @@ def dark_atmosphere(medium: Medium, method: str, workers: Workers = ALL_CPUS) ->
         columns=build_columns(padded, workers=workers),
         field=no_field(scaled),
         aureole=no_aureole(scaled),
+        horizon_peaks=no_horizon_peaks(scaled),
         basis=build_phase_basis(
             scaled.phase[..., : medium.ground_albedo.size], phase_groups(scaled)
         ),
@@ -155,6 +164,7 @@ def _to_arrays(atmosphere: Atmosphere) -> dict[str, Any]:
         "radiance": field.radiance,
         "ground": field.ground,
         "aureole": atmosphere.aureole.source,
+        "horizon_peaks": atmosphere.horizon_peaks.source,
         "basis_curves": atmosphere.basis.curves,
         "basis_weights": atmosphere.basis.weights,
     }
@@ -170,13 +180,16 @@ def _from_arrays(medium: Medium, arrays: dict[str, Any]) -> Atmosphere:
         extinction=arrays["scaled_extinction"],
         phase=delta_m_arrays["phase"][:constituents],
     )
+    twilight = twilight_scale(medium)
     field = DiffuseField(
         harmonics=build_harmonics(int(arrays["order"])),
         altitude=arrays["altitude"],
         layer=altitude_layers(scaled, arrays["altitude"]),
         sun_angle=arrays["sun_angle"],
         sun_bin=sun_bins(arrays["sun_angle"]),
-        sun_factor=sun_factors(arrays["sun_angle"]),
+        sun_factor=sun_factors(arrays["sun_angle"], twilight),
+        twilight=twilight,
+        steep_from=steep_twilight(medium),
         source=arrays["source"],
         radiance=arrays["radiance"],
         ground=arrays["ground"],
@@ -188,5 +201,6 @@ def _from_arrays(medium: Medium, arrays: dict[str, Any]) -> Atmosphere:
         columns=arrays["columns"],
         field=field,
         aureole=Aureole(arrays["aureole"]),
+        horizon_peaks=HorizonPeaks(arrays["horizon_peaks"]),
         basis=PhaseBasis(arrays["basis_curves"], arrays["basis_weights"]),
     )

@@ -115,7 +115,7 @@ def add_aureole(aureole, field, scaled, fans, begin, end, samples, scratch, out)
                 continue
             node = _fill_angle_weights(nu, scratch.angle)
             for n in range(first, last, 2):
-                share = _fill_emitted(scaled, samples, n, scratch.emitted)
+                share = fill_peak_emission(scaled, samples, n, scratch.emitted)
                 if share < 0.0:
                     continue
                 t = (1.0 - share) * samples.distance[n] + share * samples.distance[n + 1]
@@ -144,7 +144,7 @@ def _fill_angle_weights(nu, out):
 
 
 @kernel
-def _fill_emitted(scaled, samples, n, out):
+def fill_peak_emission(scaled, samples, n, out):
     """Write what the two samples of a step scatter in peaks; the second's share or, of 0, -1.
 
     Light that peaks have scattered is dimmed by all extinction on its way to the observer;

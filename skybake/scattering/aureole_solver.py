@@ -10,9 +10,9 @@ import numpy.typing as npt
 from skybake.jit.arguments import flatten
 from skybake.jit.kernel import kernel
 from skybake.jit.workers import ALL_CPUS, Workers
-from skybake.optics.delta_m import SERIES_ORDER
-from skybake.optics.legendre import legendre_moments, legendre_polynomials
-from skybake.optics.medium import Array, altitude_nodes, pad_wavelengths, vertical_columns
+from skybake.optics.delta_m import SERIES_ORDER, peak_moments, peaked_shares
+from skybake.optics.legendre import legendre_polynomials
+from skybake.optics.medium import Array, pad_wavelengths, vertical_columns
 from skybake.optics.phase import eval_phase
 from skybake.scattering.aureole import (
     ANGLES,
@@ -89,7 +89,7 @@ def solve_aureole(
         ),
         axis=-1,
     ).reshape(len(radius), -1, 4)
-    moments = _peak_moments(atmosphere)
+    moments = peak_moments(atmosphere.medium, scaled)
     first = _peaks_of_straight(atmosphere, rays, workers).reshape(*shape, -1)
     first -= _straight(atmosphere, grid, around, moments)[:, :, :, None]
     first *= fade(np.arccos(around.cosine))[:, None, None]
@@ -99,14 +99,6 @@ def solve_aureole(
         _scattered(atmosphere, grid, around, moments, difference),
         project_rings(grid, around, difference, field),
     )
-
-
-def _peak_moments(atmosphere: Atmosphere) -> Array:
-    """Legendre moments of each constituent's peak, shape (constituent, order + 1, wavelength)."""
-    scaled = atmosphere.scaled
-    moments = legendre_moments(pad_wavelengths(atmosphere.medium).phase, SERIES_ORDER)
-    moments[:, : scaled.moments.shape[1]] = scaled.fraction[:, None]
-    return moments
 
 
 def _peaks_of_straight(atmosphere: Atmosphere, rays: Array, workers: Workers) -> Array:
@@ -166,11 +158,7 @@ def _scattered(
 ) -> Aureole:
     """Scatter light once in the peaks, in each altitude's mixture of constituents."""
     scaled = atmosphere.scaled
-    medium = scaled.medium
-    fine = altitude_nodes(medium.r_bottom, medium.r_top)
-    density = np.stack([np.interp(grid.altitude, fine, each) for each in medium.density.T], axis=1)
-    share = density[:, :, None] * scaled.scattering + 1e-30 * scaled.scattering
-    share /= np.maximum(share.sum(axis=1, keepdims=True), 1e-300)
+    share = peaked_shares(scaled, grid.altitude)
     harmonics = build_harmonics(SERIES)
     at_rings = harmonics_at(harmonics, around.cosine) * around.weight[:, None]
     angles = np.linspace(0.0, LAST_ANGLE, ANGLES)

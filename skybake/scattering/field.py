@@ -19,12 +19,21 @@ from skybake.transport.exponential import fast_exp
 
 ANGLE_BINS = 2048
 
+ORDINARY_DIP = math.radians(5.0)
+"""Dip of the horizon at the top of the atmosphere below which twilight is shorter in proportion; of
+the presets Jupiter's is the least, 5.2. [rad]"""
+
+STEEP_DIPS = 0.5
+"""Depression of the sun, in dips of the horizon, beyond which twilight can end within a node."""
+
 TWILIGHT_SLOPE = 40.0
 TWILIGHT_ONSET = math.radians(5.0)
 TWILIGHT_END = math.radians(30.0)
 """Depression of the sun at which it is night. Beyond it nodes are so far apart that the decline
 from one to the next would magnify the light of a planet whose night is not so dark, one with
-an atmosphere as high as its radius, by 1000 with every scattering. [rad]"""
+an atmosphere as high as its radius, by 1000 with every scattering. [rad]
+
+All three are those of a `twilight_scale` of 1."""
 
 
 class DiffuseField(NamedTuple):
@@ -45,6 +54,10 @@ class DiffuseField(NamedTuple):
         First of the four nodes around a solar zenith angle, by equal bins of pi.
     sun_factor : ndarray of float64, shape (sun - 3, 4)
         What of `sun_weights` does not depend on the sun, see there.
+    twilight : float
+        `twilight_scale` of the atmosphere.
+    steep_from : float
+        `steep_twilight` of the atmosphere. [rad]
     source : ndarray of float64, shape (constituent, order + 1, wavelength)
         Scattering coefficient times chi_l at density 1. [km⁻¹]
     radiance : ndarray of float32, shape (altitude, sun, harmonic, wavelength)
@@ -59,9 +72,27 @@ class DiffuseField(NamedTuple):
     sun_angle: Array
     sun_bin: npt.NDArray[np.int64]
     sun_factor: Array
+    twilight: float
+    steep_from: float
     source: Array
     radiance: npt.NDArray[np.float32]
     ground: Array
+
+
+def twilight_scale(medium: Medium) -> float:
+    """How long twilight is beside an ordinary one, by the dip of the horizon at the top."""
+    return min(1.0, math.acos(medium.r_bottom / medium.r_top) / ORDINARY_DIP)
+
+
+def steep_twilight(medium: Medium) -> float:
+    """Solar zenith angle beyond which light is linear between suns, not cubic; infinite if never.
+
+    The twilight of shallow air can end within a node, and cubics through such an end swing
+    below 0.
+    """
+    if twilight_scale(medium) == 1.0:
+        return math.inf
+    return 0.5 * math.pi + STEEP_DIPS * math.acos(medium.r_bottom / medium.r_top)
 
 
 def altitude_layers(medium: Medium, altitude: Array) -> Array:
@@ -87,16 +118,22 @@ def altitude_layers(medium: Medium, altitude: Array) -> Array:
 def sun_bins(sun_angle: Array) -> npt.NDArray[np.int64]:
     """Table from equal bins of the solar zenith angle to the first of four nodes.
 
-    It holds for the start of a bin; bins are narrower than the intervals between
-    nodes, so a lookup moves on by one node at most.
+    It holds for the start of a bin, from where a lookup moves on.
     """
     starts = np.arange(ANGLE_BINS) * (math.pi / ANGLE_BINS)
     interval = np.searchsorted(sun_angle, starts, side="right") - 1
     return np.clip(interval - 1, 0, sun_angle.size - 4)
 
 
-def sun_factors(sun_angle: Array) -> Array:
+def sun_factors(sun_angle: Array, twilight: float) -> Array:
     """Denominators of Lagrange's cubics through four nodes, and how dark it is at each.
+
+    Parameters
+    ----------
+    sun_angle : ndarray of float64, shape (sun,)
+        Nodes. [rad]
+    twilight : float
+        `twilight_scale` of the atmosphere.
 
     Returns
     -------
@@ -108,7 +145,7 @@ def sun_factors(sun_angle: Array) -> Array:
     nodes = sun_angle[first + np.arange(4)]
     distance = nodes[:, :, None] - nodes[:, None, :] + np.eye(4)
     factor: Array = 1.0 / (
-        distance.prod(axis=2) * np.exp(np.vectorize(log_twilight.py_func)(nodes))
+        distance.prod(axis=2) * np.exp(np.vectorize(log_twilight.py_func)(nodes, twilight))
     )
     return factor
 
@@ -160,9 +197,12 @@ def fast_acos(x):
 
 
 @kernel
-def log_twilight(angle):
-    """Logarithm of how dark it is, roughly: 0 by day, falling by 0.7 a degree until night."""
-    below = min(angle - 0.5 * math.pi, TWILIGHT_END)
+def log_twilight(angle, scale):
+    """Logarithm of how dark it is, roughly: 0 by day, falling by 0.7 a degree until night.
+
+    A degree is one of a `twilight_scale` of 1.
+    """
+    below = min((angle - 0.5 * math.pi) / scale, TWILIGHT_END)
     if below <= 0.0:
         return 0.0
     if below < TWILIGHT_ONSET:
@@ -175,21 +215,37 @@ def sun_weights(field, mu_s, out):
     """First node and weights of the four nodes around a sun's position.
 
     Lagrange's cubic through the values divided by exp(log_twilight), which differ
-    little from node to node even where twilight falls by half between them.
+    little from node to node even where twilight falls by half between them; linear
+    beyond `steep_from`.
     """
     angle = min(fast_acos(mu_s), field.sun_angle[-1])
     j = field.sun_bin[min(int(angle * (ANGLE_BINS / math.pi)), ANGLE_BINS - 1)]
-    if angle > field.sun_angle[j + 2] and j + 4 < field.sun_angle.size:
+    while angle > field.sun_angle[j + 2] and j + 4 < field.sun_angle.size:
         j += 1
+    if angle > field.steep_from:
+        _fill_linear_weights(field, angle, j, out)
+        return j
     xa, xb = angle - field.sun_angle[j], angle - field.sun_angle[j + 1]
     xc, xd = angle - field.sun_angle[j + 2], angle - field.sun_angle[j + 3]
-    here = fast_exp(log_twilight(angle)) if angle > 0.5 * math.pi else 1.0
+    here = fast_exp(log_twilight(angle, field.twilight)) if angle > 0.5 * math.pi else 1.0
     low, high = here * xa * xb, here * xc * xd
     out[0] = field.sun_factor[j, 0] * xb * high
     out[1] = field.sun_factor[j, 1] * xa * high
     out[2] = field.sun_factor[j, 2] * xd * low
     out[3] = field.sun_factor[j, 3] * xc * low
     return j
+
+
+@kernel
+def _fill_linear_weights(field, angle, j, out):
+    """Write the weights of the two of four nodes that are on either side of a sun's position."""
+    out[0] = out[1] = out[2] = out[3] = 0.0
+    i = 1 if angle <= field.sun_angle[j + 2] else 2
+    low, high = field.sun_angle[j + i], field.sun_angle[j + i + 1]
+    share = (angle - low) / (high - low)
+    dark = log_twilight(angle, field.twilight)
+    out[i] = (1.0 - share) * fast_exp(dark - log_twilight(low, field.twilight))
+    out[i + 1] = share * fast_exp(dark - log_twilight(high, field.twilight))
 
 
 @kernel

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from skybake.jit.kernel import kernel
 from skybake.optics.medium import Array
+from skybake.scattering.aureole import fill_peak_emission
 from skybake.scattering.fans import Fans
 from skybake.scattering.field import (
     DiffuseField,
@@ -17,7 +18,9 @@ from skybake.scattering.field import (
     fill_ground_irradiance,
     sun_weights,
 )
+from skybake.scattering.field_sums import add_orders, fill_factors, sum_degrees
 from skybake.scattering.harmonics import fill_harmonics
+from skybake.scattering.horizon_peaks import add_horizon_peaks, fill_elevation_weights
 from skybake.transport.geometry import radius_at
 
 NEGLIGIBLE = 3e-4
@@ -42,6 +45,8 @@ class Scratch(NamedTuple):
         What a step scatters.
     weight, sky : ndarray, shape (wavelength,)
         Of a step, and on the ground.
+    polar, emitted : ndarray, shape (4,) and (2, wavelength)
+        Weights of elevations, and what a step scatters in peaks.
     """
 
     node: npt.NDArray[np.int64]
@@ -54,6 +59,8 @@ class Scratch(NamedTuple):
     scattering: npt.NDArray[np.float32]
     weight: npt.NDArray[np.float32]
     sky: Array
+    polar: Array
+    emitted: Array
 
 
 def allocate_scratch(field: DiffuseField, fans: Fans) -> Scratch:
@@ -72,6 +79,8 @@ def allocate_scratch(field: DiffuseField, fans: Fans) -> Scratch:
         scattering=np.empty((orders, wavelengths), np.float32),
         weight=np.empty(wavelengths, np.float32),
         sky=np.empty(wavelengths),
+        polar=np.empty(4),
+        emitted=np.empty((2, wavelengths)),
     )
 
 
@@ -82,7 +91,7 @@ def side_by_side(field: DiffuseField) -> npt.NDArray[np.float32]:
 
 
 @kernel
-def add_diffuse(field, radiance, medium, fans, begin, end, samples, scratch, out):
+def add_diffuse(field, radiance, peaks, scaled, fans, begin, end, samples, scratch, out):
     """Add the light that rays bring out of the diffuse field.
 
     Parameters
@@ -91,7 +100,9 @@ def add_diffuse(field, radiance, medium, fans, begin, end, samples, scratch, out
         The light to be scattered.
     radiance : ndarray of float32, shape (altitude, sun, harmonic * wavelength)
         Its moments once more, from `side_by_side`.
-    medium : Medium
+    peaks : HorizonPeaks
+        What peaks scatter of it across the horizon.
+    scaled : ScaledMedium
         The atmosphere.
     fans : Fans
         The rays.
@@ -107,11 +118,12 @@ def add_diffuse(field, radiance, medium, fans, begin, end, samples, scratch, out
     At a sample the sum over degrees l, which rays of a fan share, is done first,
     at each node of the sun's angle that any of them needs; a ray then sums orders m.
     """
-    wavelengths = out.shape[1]
+    medium, wavelengths = scaled.medium, out.shape[1]
     node, weights, cosine = scratch.node, scratch.weights, scratch.cosine
     fourier, series = scratch.fourier, scratch.series
     harmonic, factor, scattering = scratch.harmonic, scratch.factor, scratch.scattering
     weight, sky = scratch.weight, scratch.sky
+    polar, emitted = scratch.polar, scratch.emitted
     for fan in range(begin, end):
         i, count = fans.first[fan], fans.first[fan + 1] - fans.first[fan]
         r, mu = fans.starts[fan, 0], fans.starts[fan, 1]
@@ -132,13 +144,18 @@ def add_diffuse(field, radiance, medium, fans, begin, end, samples, scratch, out
                 field, fans.rays, i, count, t, radius, mu_here, node, weights, cosine
             )
             fill_harmonics(field.harmonics, mu_here, harmonic)
-            _fill_factors(harmonic, scattering, degrees, factor)
+            fill_factors(harmonic, scattering, degrees, factor)
             low, u = altitude_weight(field, radius - medium.r_bottom)
+            at = _fill_peaks(peaks, scaled, samples, n, radius, mu_here, polar, emitted)
             for j in range(least, most):
                 below, above = radiance[low, j], radiance[low + 1, j]
-                _sum_degrees(below, above, u, factor, degrees, wavelengths, fourier[j])
+                sum_degrees(below, above, u, factor, degrees, wavelengths, fourier[j])
+                if at >= 0:
+                    add_horizon_peaks(
+                        peaks, low, u, j, at, polar, emitted[0], degrees, series, fourier[j]
+                    )
             for q in range(count):
-                _add_orders(fourier, node[q], weights[q], cosine[q], degrees, series, out[i + q])
+                add_orders(fourier, node[q], weights[q], cosine[q], degrees, series, out[i + q])
         if samples.hits_ground[fan - begin]:
             length = samples.length[fan - begin]
             for q in range(count):
@@ -162,6 +179,18 @@ def _fill_scattering(field, samples, n, weight, out):
         for degree in range(out.shape[0]):
             for k in range(weight.size):
                 out[degree, k] += np.float32(field.source[c, degree, k]) * weight[k]
+
+
+@kernel
+def _fill_peaks(peaks, scaled, samples, n, radius, mu, polar, emitted):
+    """Write what a step scatters in peaks and weights of its elevation, whose node is returned.
+
+    It is -1 where there is nothing of either.
+    """
+    node = fill_elevation_weights(peaks, scaled.medium.r_bottom, radius, mu, polar)
+    if node >= 0 and fill_peak_emission(scaled, samples, n, emitted) < 0.0:
+        return -1
+    return node
 
 
 @kernel
@@ -202,49 +231,3 @@ def _fill_suns(field, rays, first, count, t, radius, mu_here, node, weights, cos
         node[q] = sun_weights(field, mu_s_here, weights[q])
         least, most = min(least, node[q]), max(most, node[q])
     return least, most + 4
-
-
-@kernel
-def _fill_factors(harmonic, scattering, degrees, out):
-    """Write harmonics times what their degree scatters, flat as the moments of a field."""
-    wavelengths = scattering.shape[1]
-    p = 0
-    for degree in range(degrees):
-        for _ in range(degree + 1):
-            value, here = np.float32(harmonic[p]), out[p * wavelengths : (p + 1) * wavelengths]
-            for k in range(here.size):
-                here[k] = value * scattering[degree, k]
-            p += 1
-
-
-@kernel
-def _sum_degrees(below, above, u, factor, degrees, wavelengths, out):
-    """Sum over l of the scattered moments between two altitudes, flat by m and wavelength."""
-    upper = np.float32(u)
-    for q in range(degrees * wavelengths):
-        out[q] = 0.0
-    first = 0
-    for degree in range(degrees):
-        length = (degree + 1) * wavelengths
-        low, high = below[first : first + length], above[first : first + length]
-        scale = factor[first : first + length]
-        for q in range(length):
-            out[q] += scale[q] * (low[q] + upper * (high[q] - low[q]))
-        first += length
-
-
-@kernel
-def _add_orders(fourier, node, weights, cosine, degrees, series, out):
-    """Add a Fourier series in azimuth, interpolated between four sun angles."""
-    a, b = np.float32(weights[0]), np.float32(weights[1])
-    c, d = np.float32(weights[2]), np.float32(weights[3])
-    at_a, at_b, at_c, at_d = fourier[node], fourier[node + 1], fourier[node + 2], fourier[node + 3]
-    for q in range(degrees * out.size):
-        series[q] = a * at_a[q] + b * at_b[q] + c * at_c[q] + d * at_d[q]
-    before, now = np.float32(cosine), np.float32(1.0)
-    twice = np.float32(2.0 * cosine)
-    for m in range(degrees):
-        term = series[m * out.size : (m + 1) * out.size]
-        for k in range(out.size):
-            out[k] += now * term[k]
-        before, now = now, twice * now - before

@@ -129,7 +129,9 @@ class LightOfFans:
         # A field on less than two altitudes holds no light.
         self._has_field = field.altitude.size > 1
         self._sources = [flatten(each) for each in (scaled, PEAK_NODES, atmosphere.columns)]
-        self._moments = [flatten(each) for each in (field, side_by_side(field), scaled.medium)]
+        self._moments = [
+            flatten(each) for each in (field, side_by_side(field), atmosphere.horizon_peaks, scaled)
+        ]
         # Only a medium with peaks that matter has an aureole.
         self._has_aureole = atmosphere.aureole.source.shape[2] > 0
         self._bent = flatten(atmosphere.aureole), self._moments[0], self._sources[0]

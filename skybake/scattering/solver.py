@@ -3,40 +3,23 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
-from skybake.angles import cosine_between
 from skybake.errors import TooThickError
-from skybake.jit.arguments import Flat, flatten
 from skybake.jit.workers import ALL_CPUS, Workers
-from skybake.optics.delta_m import ScaledMedium
-from skybake.optics.legendre import legendre_polynomials
+from skybake.optics.delta_m import ScaledMedium, peak_moments
 from skybake.optics.medium import Array
 from skybake.scattering.anderson import Anderson
 from skybake.scattering.aureole_solver import has_aureole, solve_aureole
-from skybake.scattering.fans import group_rays
 from skybake.scattering.field import DiffuseField, lower_order, raise_order, sum_fields
-from skybake.scattering.grid import (
-    ORDER,
-    Grid,
-    build_grid,
-    coarsen_grid,
-    empty_field,
-    no_field,
-    project,
-)
+from skybake.scattering.grid import ORDER, Grid, build_grid, coarsen_grid, empty_field
+from skybake.scattering.horizon_peaks_solver import solve_horizon_peaks
 from skybake.scattering.limits import check_medium
-from skybake.scattering.multiple import add_diffuse, allocate_scratch, side_by_side
-from skybake.scattering.ray import trace_rays
+from skybake.scattering.passes import Batch, scatter_field, scatter_sunlight, trace_grid
 from skybake.scattering.tables import Atmosphere
-from skybake.transport.samples import allocate_samples
-from skybake.transport.shells import altitude_shells
-from skybake.transport.trace import trace
 
-FIRST_SHELLS = 22
-SHELLS = 20
 TOLERANCE = 5e-3
 """Relative change by the scatterings that follow the last pass, at which iteration ends; of
 these, the next passes would change a tenth."""
@@ -49,6 +32,9 @@ DARKEST = 1e-7
 """Of the field under the brightest sun: the least that a change is compared with. Where light falls
 faster than this from one sun to the next, rounding of the brighter is all that is left."""
 
+FAINTEST = 1e-9
+"""Of the field under the brightest sun: the least that passes are mixed in units of."""
+
 MAX_PASSES = 20
 MAX_COARSE_PASSES = 400
 
@@ -59,9 +45,7 @@ DIVERGED = 0.5
 """Relative change that no iteration which will converge shows after `SURE_PASSES`."""
 
 SURE_PASSES = 40
-
-ARC = math.radians(2.0)
-FIRST_ARC = math.radians(2.0)
+"""Passes after which what is left, such as twilight far darker than the day, is mixed by itself."""
 
 
 def solve_light(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> Atmosphere:
@@ -77,7 +61,8 @@ def solve_light(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> Atmosphe
     Returns
     -------
     Atmosphere
-        With its field, which holds all orders of scattering and reflection, and its aureole.
+        With its field, which holds all orders of scattering and reflection, its aureole and what
+        peaks scatter across the horizon.
 
     Raises
     ------
@@ -92,8 +77,8 @@ def solve_light(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> Atmosphe
     is iterated. The light that the last pass changed is followed through all its
     further scatterings in a field of few harmonics, where a pass costs a quarter
     (diffusion synthetic acceleration, with `COARSE_ORDER` for the diffusion): what
-    takes many scatterings to settle is smooth. Two passes in between settle what is
-    not.
+    takes many scatterings to settle is smooth. What is not, passes settle one by one, which are
+    mixed (Anderson) with each sun's light in units of its own, so that twilight counts as day does.
 
     References
     ----------
@@ -105,33 +90,47 @@ def solve_light(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> Atmosphe
     grid = build_grid(scaled)
     dark = empty_field(scaled, grid.altitude, grid.sun_angle, ORDER)
     coarse_grid = coarsen_grid(grid, scaled.medium.r_bottom, COARSE_ORDER)
-    coarse_rays, rays = _trace_grid(scaled, coarse_grid), _trace_grid(scaled, grid)
-    first = _first_order(atmosphere, grid, workers)
+    coarse_rays, rays = trace_grid(scaled, coarse_grid), trace_grid(scaled, grid)
+    first, radiance_of_first = scatter_sunlight(atmosphere, grid, workers)
     if has_aureole(atmosphere):
         aureole, bent = solve_aureole(atmosphere, grid, dark, workers)
         atmosphere, first = atmosphere._replace(aureole=aureole), sum_fields(first, bent, 1.0)
-
-    def scatter(field: DiffuseField) -> DiffuseField:
-        return _scatter(scaled, field, grid, rays, workers)
 
     def settle(new: DiffuseField, total: DiffuseField) -> DiffuseField:
         return _settle(scaled, new, total, coarse_grid, coarse_rays, workers)
 
     new = lower_order(first, COARSE_ORDER)
     field = raise_order(settle(new, new), new, first)
-    for _ in range(MAX_PASSES // 2):
-        once = sum_fields(first, scatter(field), 1.0)
-        twice = sum_fields(first, scatter(once), 1.0)
-        total = lower_order(twice, COARSE_ORDER)
-        new = sum_fields(total, lower_order(once, COARSE_ORDER), -1.0)
+    scattered, _ = scatter_field(scaled, field, grid, rays, workers)
+    field = sum_fields(first, scattered, 1.0)
+    mixing, unit = Anderson(scaled.mixture.size), _brightness(field)
+    for _ in range(MAX_PASSES):
+        scattered, radiance = scatter_field(scaled, field, grid, rays, workers)
+        image = sum_fields(first, scattered, 1.0)
+        total = lower_order(image, COARSE_ORDER)
+        new = sum_fields(total, lower_order(field, COARSE_ORDER), -1.0)
         settled = settle(new, total)
-        field = raise_order(settled, new, twice)
+        image = raise_order(settled, new, image)
+        field = _field(image, mixing.step(_state(field) / unit, _state(image) / unit) * unit)
         change = _relative(_state(settled) - _state(new), _state(total), grid)
         if change.max() < TOLERANCE:
+            if has_aureole(atmosphere):
+                # The field's moments are settled since, which changes the difference little.
+                radiance += radiance_of_first
+                atmosphere = _with_horizon_peaks(atmosphere, grid, radiance)
             return atmosphere._replace(field=field)
         if not np.isfinite(change).all():
             break
     raise _no_convergence(MAX_PASSES, TOLERANCE, float(change.max()))
+
+
+def _with_horizon_peaks(
+    atmosphere: Atmosphere, grid: Grid, radiance: npt.NDArray[np.float32]
+) -> Atmosphere:
+    """Add what peaks scatter of the diffuse radiance at a grid's nodes across the horizon."""
+    moments = peak_moments(atmosphere.medium, atmosphere.scaled)
+    peaks = solve_horizon_peaks(atmosphere.scaled, grid, moments, radiance)
+    return atmosphere._replace(horizon_peaks=peaks)
 
 
 def _settle(
@@ -149,15 +148,20 @@ def _settle(
     sunlit = wavelengths * np.count_nonzero(grid.sun_angle < 0.5 * math.pi)
     state, previous, left = start, 0.0, 0.0
     for turn in range(MAX_COARSE_PASSES):
-        image = start + _state(_scatter(scaled, _field(new, state), grid, rays, workers))
+        scattered, _ = scatter_field(scaled, _field(new, state), grid, rays, workers)
+        image = start + _state(scattered)
         change = _relative(image - state, np.maximum(abs(image), abs(scale)), grid)
         if turn == 1:
             # The first step is not mixed yet: the ratio is what one scattering leaves.
             left = float(change[:sunlit].max()) / max(previous, 1e-30)
             left = min(max(left, 1e-3), 0.9999)
-        state = mixing.step(state, image)
         # In a thick atmosphere a small change is not a small error.
-        if turn > 0 and change.max() < max(COARSE_TOLERANCE * (1.0 - left) / left, LEAST_CHANGE):
+        least = max(COARSE_TOLERANCE * (1.0 - left) / left, LEAST_CHANGE) if turn > 0 else 0.0
+        if turn == SURE_PASSES:
+            mixing = Anderson(wavelengths)
+        weight = _unsettled(image - state, change, 0.5 * least) if turn >= SURE_PASSES else None
+        state = mixing.step(state, image, weight)
+        if change.max() < least:
             return _field(new, state)
         if not np.isfinite(change).all() or (turn >= SURE_PASSES and change.max() > DIVERGED):
             break
@@ -176,6 +180,15 @@ def _relative(change: Array, state: Array, grid: Grid) -> Array:
     return relative
 
 
+def _unsettled(change: Array, relative: Array, least: float) -> Array:
+    """Weights of the rows whose relative change is above the least, by which all count the same."""
+    weight = np.zeros(len(change))
+    size = np.linalg.norm(change[: len(relative)], axis=1).astype(float)
+    is_left = relative > least
+    weight[: len(relative)][is_left] = (relative[is_left] / size[is_left]) ** 2
+    return weight
+
+
 def _no_convergence(passes: int, tolerance: float, change: float) -> TooThickError:
     return TooThickError(
         f"multiple scattering: must converge to a relative change of {tolerance:g}, "
@@ -183,95 +196,11 @@ def _no_convergence(passes: int, tolerance: float, change: float) -> TooThickErr
     )
 
 
-def _first_order(atmosphere: Atmosphere, grid: Grid, workers: Workers) -> DiffuseField:
-    """Moments of the light scattered or reflected exactly once."""
-    scaled = atmosphere.scaled
-    without_peaks = atmosphere._replace(
-        scaled=scaled._replace(peaked=scaled.peaked[:0], phase=scaled.medium.phase),
-        shells=altitude_shells(scaled.medium, FIRST_SHELLS),
-        field=no_field(scaled),
-    )
-    constituents = scaled.medium.phase.shape[0]
-    field = empty_field(scaled, grid.altitude, grid.sun_angle, ORDER)
-    degree = np.arange(ORDER + 1)
-    series = scaled.moments * ((2 * degree + 1) / (4.0 * math.pi))[:, None]
-    for i in range(grid.altitude.size):
-        rays = _rays_at(scaled, grid, i)
-        light = trace_rays(without_peaks, *rays.T, max_arc=FIRST_ARC, workers=workers)
-        polynomials = legendre_polynomials(rays[:, 3], ORDER)
-        radiance = light.diffuse
-        for c in range(constituents):
-            radiance += light.single[:, c] * (polynomials.T @ series[c])
-        project(grid, i, radiance.reshape(*_shape(grid), -1), field)
-    return field
-
-
-def _rays_at(scaled: ScaledMedium, grid: Grid, node: int) -> Array:
-    """Rays in all directions of an altitude's node for all suns, shape (ray, 4)."""
-    mu, sun, azimuth = np.meshgrid(grid.mu[node], grid.sun_angle, grid.azimuth, indexing="ij")
-    mu_s = np.cos(sun)
-    nu = cosine_between(mu, np.sqrt(1.0 - mu**2), mu_s, np.sin(sun), azimuth)
-    # A ray that starts on the ground itself must still see the sky.
-    r = np.full(mu.shape, scaled.medium.r_bottom + max(grid.altitude[node], 1e-8))
-    return np.stack([r, mu, mu_s, nu], axis=-1).reshape(-1, 4)
-
-
-def _shape(grid: Grid) -> tuple[int, int, int]:
-    """Numbers of directions, suns and azimuths that the rays of an altitude stand for."""
-    return grid.mu.shape[1], grid.sun_angle.size, grid.azimuth.size
-
-
-class Batch(NamedTuple):
-    """Directions `begin` to `end` of a grid's altitude `node`, as `Fans`, and their `Samples`."""
-
-    node: int
-    fans: Flat
-    begin: int
-    end: int
-    samples: Flat
-
-
-def _trace_grid(scaled: ScaledMedium, grid: Grid) -> list[Batch]:
-    """Trace the grid's directions; their samples serve every pass and every sun."""
-    shells = altitude_shells(scaled.medium, SHELLS)
-    batches = []
-    for node in range(grid.altitude.size):
-        fans = group_rays(_rays_at(scaled, grid, node))
-        begin, end = 0, len(fans.starts)
-        while begin < end:
-            samples = allocate_samples(scaled.medium)
-            stop = trace(scaled.medium, shells, ARC, fans.starts, begin, end, samples)
-            batches.append(Batch(node, flatten(fans), begin, stop, flatten(samples)))
-            begin = stop
-    return batches
-
-
-def _scatter(
-    scaled: ScaledMedium, field: DiffuseField, grid: Grid, batches: list[Batch], workers: Workers
-) -> DiffuseField:
-    """Scatter a field once more and transport it; the ground reflects its irradiance."""
-    nodes, wavelengths = grid.altitude.size, field.ground.shape[1]
-    out = np.zeros((nodes, math.prod(_shape(grid)), wavelengths), np.float32)
-    light = [flatten(each) for each in (field, side_by_side(field), scaled.medium)]
-
-    def work(first: int, last: int) -> None:
-        for batch in batches[first:last]:
-            scratch = allocate_scratch(field, batch.fans.value)
-            rays = batch.fans, batch.begin, batch.end, batch.samples
-            add_diffuse(*light, *rays, scratch, out[batch.node])
-
-    workers.run_rows(len(batches), work)
-    scattered = field._replace(
-        radiance=np.empty_like(field.radiance), ground=np.empty_like(field.ground)
-    )
-    shape = *_shape(grid), wavelengths
-
-    def store(first: int, last: int) -> None:
-        for i in range(first, last):
-            project(grid, i, out[i].reshape(shape), scattered)
-
-    workers.run_rows(nodes, store)
-    return scattered
+def _brightness(field: DiffuseField) -> Array:
+    """Size of a field's state under each sun and at each wavelength, (row, 1); never 0."""
+    size = np.linalg.norm(_state(field), axis=1)[:, None]
+    brightness: Array = np.maximum(size, max(FAINTEST * float(size.max()), 1e-30))
+    return brightness
 
 
 def _state(field: DiffuseField) -> Array:

@@ -11,6 +11,7 @@ from skybake.optics.delta_m import PEAK_NODES
 from skybake.optics.medium import Medium, pad_wavelengths
 from skybake.optics.phase import SCATTERING_ANGLES
 from skybake.scattering.aureole import ANGLES, ORDERS
+from skybake.scattering.horizon_peaks import SIDE
 from skybake.scattering.transmittance import SHAPE
 
 Shape = tuple[int | str, ...]
@@ -37,6 +38,10 @@ _SHAPES: dict[str, tuple[type, Shape]] = {
     "radiance": (np.float32, ("altitude", "sun", "harmonic", "padded wavelength")),
     "ground": (np.float64, ("sun", "padded wavelength")),
     "aureole": (np.float32, ("aureole altitude", "aureole sun", "aureole angle", "aureole term")),
+    "horizon_peaks": (
+        np.float32,
+        ("peak altitude", "peak sun", "elevation", "peak term"),
+    ),
     "basis_curves": (np.float64, ("basis curve", SCATTERING_ANGLES)),
     "basis_weights": (np.float64, ("phase function", "wavelength", "basis curve")),
 }
@@ -64,6 +69,10 @@ def are_tables_of(medium: Medium, arrays: Mapping[str, Any]) -> bool:
         related |= {"aureole altitude": sizes["altitude"], "aureole sun": sizes["sun"]}
         related["aureole angle"] = ANGLES
     related["aureole term"] = ORDERS * sizes["padded wavelength"]
+    if sizes["elevation"] > 0:
+        related |= {"peak altitude": sizes["altitude"], "peak sun": sizes["sun"]}
+        related["elevation"] = 2 * SIDE
+        related["peak term"] = (order + 1) * sizes["padded wavelength"]
     return (
         all(sizes[name] == size for name, size in related.items())
         and sizes["sun"] >= 4

@@ -9,6 +9,7 @@ from skybake.optics.medium import Array, Medium
 from skybake.optics.phase_basis import PhaseBasis
 from skybake.scattering.aureole import Aureole
 from skybake.scattering.field import DiffuseField
+from skybake.scattering.horizon_peaks import HorizonPeaks
 
 
 class Atmosphere(NamedTuple):
@@ -29,6 +30,8 @@ class Atmosphere(NamedTuple):
         The light that was scattered before.
     aureole : Aureole
         What forward peaks scatter of light that other peaks bent.
+    horizon_peaks : HorizonPeaks
+        What forward peaks scatter of diffuse light across the horizon.
     basis : PhaseBasis
         Curves that the phase functions of `scaled` are sums of.
     """
@@ -39,4 +42,5 @@ class Atmosphere(NamedTuple):
     columns: Array
     field: DiffuseField
     aureole: Aureole
+    horizon_peaks: HorizonPeaks
     basis: PhaseBasis

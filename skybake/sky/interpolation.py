@@ -1,4 +1,4 @@
-"""Interpolation in a sky's table, with cubics between its nodes."""
+"""Interpolation in a sky's table, with cubics between its nodes or linearly."""
 
 from __future__ import annotations
 
@@ -11,10 +11,13 @@ from skybake.sky.table import dusk_coordinate, sun_range
 
 
 @kernel
-def _cubic(x, size, out):
-    """Catmull-Rom weights of four nodes around `x`; returns the first, which may be -1."""
+def _fill_weights(x, size, is_linear, out):
+    """Catmull-Rom or linear weights of four nodes around `x`; returns the first, maybe -1."""
     i = min(max(int(x), 0), size - 2)
     s = min(max(x - i, 0.0), 1.0)
+    if is_linear:
+        out[0], out[1], out[2], out[3] = 0.0, 1.0 - s, s, 0.0
+        return i - 1
     out[0] = 0.5 * s * (-1.0 + s * (2.0 - s))
     out[1] = 1.0 + 0.5 * s * s * (3.0 * s - 5.0)
     out[2] = 0.5 * s * (1.0 + s * (4.0 - 3.0 * s))
@@ -55,10 +58,11 @@ def azimuth_weights(folded, theta, phi, cosine, out):
     """Weights of four azimuths; returns the row of `fill_latitude` that holds the first."""
     size = azimuth_count(folded)
     if folded.zenith_first == 0.0:
-        return _cubic(phi / math.pi * (size - 1), size, out) + 1
+        return _fill_weights(phi / math.pi * (size - 1), size, folded.is_linear, out) + 1
     middle, half = sun_range(folded.source_zenith, folded.zenith_horizon, theta)
     x = dusk_coordinate(middle, half, cosine)
-    return _keep_inside(_cubic(x * (size - 1), size, out), size, out) + 1
+    first = _fill_weights(x * (size - 1), size, folded.is_linear, out)
+    return _keep_inside(first, size, out) + 1
 
 
 @kernel
@@ -71,7 +75,8 @@ def _latitude_weights(folded, side, zenith, out):
     else:
         span = folded.zenith_horizon - folded.zenith_first
         x = 1.0 - math.sqrt(max(folded.zenith_horizon - zenith, 0.0) / span)
-    return _keep_inside(_cubic(x * (size - 1), size, out), size, out)
+    first = _fill_weights(x * (size - 1), size, folded.is_linear, out)
+    return _keep_inside(first, size, out)
 
 
 @kernel

@@ -147,6 +147,7 @@ def fold_table(table: SpectralTable, basis: PhaseBasis, rgb_weights: Array) -> F
         source_zenith=geometry.source_zenith,
         values=values.astype(np.float32).reshape(*values.shape[:2], -1),
         curves=np.ascontiguousarray(padded.curves.T, dtype=np.float32),
+        is_linear=False,
     )
 
 

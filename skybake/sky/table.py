@@ -67,6 +67,8 @@ class FoldedTable(NamedTuple):
         to the opposite one; R, G and B, each with a value for every curve.
     curves : ndarray of float32, shape (SCATTERING_ANGLES, curve)
         The basis of phase functions over the scattering angle.
+    is_linear : bool
+        Whether pixels are linear between nodes, which adds no swing to a sharp edge, or cubic.
     """
 
     zenith_first: float
@@ -74,6 +76,7 @@ class FoldedTable(NamedTuple):
     source_zenith: float
     values: Table
     curves: Table
+    is_linear: bool
 
 
 def horizon_angles(r: float, r_bottom: float, r_top: float) -> tuple[float, float]:

@@ -13,6 +13,7 @@ from skybake.errors import CancelledError
 from skybake.jit.kernel import Kernel
 from skybake.jit.workers import Workers
 from skybake.projection import Cubemap, Equirect, Perspective
+from tests.cli.cloudy import few_voxels
 
 PLAIN = skybake.map_settings(size=64, sun_elevation=math.radians(20.0))
 
@@ -101,6 +102,20 @@ def test_progress_names_the_stages_and_ends_each_at_one():
         shares = [share for name, share in heard if name == stage]
         assert shares == sorted(shares)
         assert shares[-1] == 1.0
+
+
+def test_a_world_with_clouds_has_a_stage_more(tmp_path):
+    few_voxels(tmp_path)
+    heard = []
+    world = tmp_path / "cloudy.toml"
+    world.write_text('extends = "earth"\n[clouds.own]\ntile = "cloud.npz"\nbase_km = 1.0\n')
+    skybake.Pipeline().image(world, PLAIN, progress=lambda *news: heard.append(news))
+    assert list(dict.fromkeys(heard)) == [
+        (stage, share)
+        for stage in ("atmosphere", "sky", "clouds", "pixels")
+        for share in (0.0, 1.0)
+        if (stage, share) != ("pixels", 0.0)
+    ]
 
 
 @pytest.mark.parametrize("stage", ["atmosphere", "sky", "pixels"])

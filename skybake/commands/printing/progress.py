@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -17,17 +17,42 @@ if TYPE_CHECKING:
 
 _STEPS = 1000
 
+_LABELS = {"pixels": "baking"}
+"""What a bar calls a stage by another name."""
+
 STYLES = ("auto", "bar", "plain", "openjd", "none")
 
 
+class MapProgress:
+    """Shows a map's stage and the share of its pixels that is done.
+
+    Parameters
+    ----------
+    bar : click progress bar
+        On the terminal.
+    """
+
+    def __init__(self, bar: Any) -> None:
+        self._bar = bar
+
+    def __call__(self, share: float) -> None:
+        """Show the share of the pixels that is done."""
+        self._bar.update(round(share * _STEPS) - self._bar.pos)
+
+    def begin(self, stage: str) -> None:
+        """Show the stage that begins."""
+        self._bar.label = _LABELS.get(stage, stage)
+        self._bar.render_progress()
+
+
 @contextmanager
-def map_progress(*, quiet: bool) -> Iterator[Callable[[float], None] | None]:
-    """Yield a function that takes the completed share, or None without a terminal."""
+def map_progress(*, quiet: bool) -> Iterator[MapProgress | None]:
+    """Yield what shows the progress of a map, or None without a terminal."""
     if quiet or not sys.stderr.isatty():
         yield None
         return
-    with click.progressbar(length=_STEPS, label="baking", file=sys.stderr) as bar:
-        yield lambda share: bar.update(round(share * _STEPS) - bar.pos)
+    with click.progressbar(length=_STEPS, label=_LABELS["pixels"], file=sys.stderr) as bar:
+        yield MapProgress(bar)
 
 
 class FrameProgress:

@@ -1,0 +1,142 @@
+"""Solving for what peaks scatter across the horizon, from the solver's radiance around it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from skybake.optics.delta_m import ScaledMedium, peaked_shares
+from skybake.optics.medium import Array
+from skybake.scattering.grid import Grid
+from skybake.scattering.horizon_peaks import LAST_SINE, SIDE, HorizonPeaks
+
+SERIES = 100
+"""Highest Legendre order of the peaks that is resolved."""
+
+FINE = 64
+"""Directions on either side of the horizon at which radiance is interpolated."""
+
+
+def solve_horizon_peaks(
+    scaled: ScaledMedium, grid: Grid, moments: Array, radiance: npt.NDArray[np.float32]
+) -> HorizonPeaks:
+    """Scatter diffuse light in peaks around the horizon, less what goes straight on.
+
+    Parameters
+    ----------
+    scaled : ScaledMedium
+        The atmosphere.
+    grid : Grid
+        Nodes of altitude, sun and direction.
+    moments : ndarray, shape (constituent, order + 1, wavelength)
+        Legendre moments of each constituent's peak, at least up to `SERIES`.
+    radiance : ndarray of float32, shape (altitude, polar, sun, azimuth, wavelength)
+        Diffuse radiance at the nodes. [sr⁻¹]
+    """
+    r_bottom = scaled.medium.r_bottom
+    share = peaked_shares(scaled, grid.altitude)
+    mixed = _single(np.einsum("acw,clw->awl", share, moments[:, : SERIES + 1]))[:, :, None]
+    fraction = np.einsum("acw,cw->aw", share, scaled.fraction)[..., None, None]
+    mu_horizon = -np.sqrt(np.maximum(1.0 - (r_bottom / (r_bottom + grid.altitude)) ** 2, 0.0))
+    fine, spread = _fine_directions(grid, mu_horizon)
+    mu, interpolation = _elevations(grid, mu_horizon)
+    straight = _single(fraction * interpolation[:, None])
+    radiance = np.matmul(_fourier_terms(grid.azimuth), radiance)
+    altitudes, polar, suns, orders, wavelengths = radiance.shape
+    source = np.empty((altitudes, suns, mu.shape[1], orders, wavelengths), np.float32)
+    fade = _fade()
+    for m in range(orders):
+        at_fine = _associated_legendre(m, fine)
+        at_elevations = _single(_associated_legendre(m, mu).transpose(1, 2, 0))
+        for i in range(altitudes):
+            there = _single(at_fine[:, i] @ spread[i])
+            here = (mixed[i, ..., m:] * at_elevations[i]).reshape(-1, len(there))
+            peaked = (here @ there).reshape(wavelengths, -1, polar)
+            peaked = (peaked - straight[i]) * fade
+            term = np.ascontiguousarray(radiance[i, :, :, m].transpose(2, 0, 1))
+            source[i, :, :, m] = (peaked @ term).transpose(2, 1, 0)
+    return HorizonPeaks(source.reshape(*source.shape[:3], -1))
+
+
+def _fourier_terms(azimuth: Array) -> npt.NDArray[np.float32]:
+    """Weights of values at `azimuths` in the terms cos(m * azimuth), shape (order, azimuth)."""
+    orders = np.arange(azimuth.size)
+    weights = np.cos(np.outer(orders, azimuth)) * np.where(orders > 0, 2.0, 1.0)[:, None]
+    return _single(weights / azimuth.size)
+
+
+def _single(values: Array) -> npt.NDArray[np.float32]:
+    """Round to single precision."""
+    rounded: npt.NDArray[np.float32] = values.astype(np.float32)
+    return rounded
+
+
+def _fade() -> npt.NDArray[np.float32]:
+    """Share of the difference that is kept at each elevation, none at the last, (elevation, 1)."""
+    fading = np.clip(2.0 * np.arange(SIDE) / (SIDE - 1.0) - 1.0, 0.0, 1.0)
+    share = np.cos(0.5 * math.pi * fading) ** 2
+    return _single(np.concatenate([share, share])[:, None])
+
+
+def _fine_directions(grid: Grid, mu_horizon: Array) -> tuple[Array, Array]:
+    """Cosines, and their share of d mu times the interpolation from the grid's directions.
+
+    Shapes (altitude, fine) and (altitude, fine, polar).
+    """
+    x, weight = np.polynomial.legendre.leggauss(FINE)
+    x, weight = 0.5 * (x + 1.0), 0.5 * weight
+    at_horizon = mu_horizon[:, None]
+    spans = 1.0 - at_horizon, -1.0 - at_horizon
+    mu = np.concatenate([at_horizon + span * x**1.5 for span in spans], axis=1)
+    share = np.concatenate([abs(span) * 1.5 * np.sqrt(x) * weight for span in spans], axis=1)
+    spread = np.zeros((*mu.shape, grid.mu.shape[1]))
+    up = grid.upward
+    spread[:, :FINE, :up] = _interpolation(up, x)
+    spread[:, FINE:, up:] = _interpolation(grid.mu.shape[1] - up, x)
+    spread *= share[:, :, None]
+    return mu, spread
+
+
+def _elevations(grid: Grid, mu_horizon: Array) -> tuple[Array, Array]:
+    """Cosines of `HorizonPeaks` and the interpolation to them from the grid's directions."""
+    distance = LAST_SINE * (np.arange(SIDE) / (SIDE - 1.0)) ** 2
+    above = np.minimum(distance, 1.0 - mu_horizon[:, None])
+    below = np.minimum(distance, 1.0 + mu_horizon[:, None])
+    mu = mu_horizon[:, None] + np.concatenate([above, -below], axis=1)
+    straight = np.zeros((*mu.shape, grid.mu.shape[1]))
+    up = grid.upward
+    for i, at_horizon in enumerate(mu_horizon):
+        x = (above[i] / (1.0 - at_horizon)) ** (2.0 / 3.0)
+        straight[i, :SIDE, :up] = _interpolation(up, x)
+        x = (below[i] / (1.0 + at_horizon)) ** (2.0 / 3.0)
+        straight[i, SIDE:, up:] = _interpolation(grid.mu.shape[1] - up, x)
+    return mu, straight
+
+
+def _interpolation(count: int, x: Array) -> Array:
+    """Weights of Gauss' nodes between 0 and 1 in the polynomial through them, (x, node)."""
+    nodes = 0.5 * (np.polynomial.legendre.leggauss(count)[0] + 1.0)
+    weights = np.ones((x.size, count))
+    for i in range(count):
+        others = np.delete(nodes, i)
+        weights[:, i] = ((x[:, None] - others) / (nodes[i] - others)).prod(axis=1)
+    return weights
+
+
+def _associated_legendre(m: int, mu: Array) -> Array:
+    """Functions of order m and degrees m to `SERIES`, orthonormal in mu, (degree, ...)."""
+    values = np.empty((SERIES + 1 - m, *mu.shape))
+    k = np.arange(1, m + 1)
+    values[0] = np.sqrt(0.5 * ((2 * k + 1) / (2 * k)).prod()) * (1.0 - mu**2) ** (0.5 * m)
+    back = 0.0
+    for degree in range(m + 1, SERIES + 1):
+        i = degree - m
+        scale = math.sqrt((4 * degree**2 - 1) / (degree**2 - m**2))
+        values[i] = mu * values[i - 1]
+        if i > 1:
+            values[i] -= back * values[i - 2]
+        values[i] *= scale
+        back = 1.0 / scale
+    return values

@@ -1,0 +1,134 @@
+"""Single passes of the solver: light is scattered once and transported to the grid's nodes."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from skybake.angles import cosine_between
+from skybake.jit.arguments import Flat, flatten
+from skybake.jit.workers import Workers
+from skybake.optics.delta_m import ScaledMedium
+from skybake.optics.legendre import legendre_polynomials
+from skybake.optics.medium import Array
+from skybake.scattering.fans import group_rays
+from skybake.scattering.field import DiffuseField
+from skybake.scattering.grid import ORDER, Grid, empty_field, no_field, project
+from skybake.scattering.horizon_peaks import no_horizon_peaks
+from skybake.scattering.multiple import add_diffuse, allocate_scratch, side_by_side
+from skybake.scattering.ray import trace_rays
+from skybake.scattering.tables import Atmosphere
+from skybake.transport.samples import allocate_samples
+from skybake.transport.shells import altitude_shells
+from skybake.transport.trace import trace
+
+FIRST_SHELLS = 22
+SHELLS = 20
+ARC = math.radians(2.0)
+FIRST_ARC = math.radians(2.0)
+
+
+def scatter_sunlight(
+    atmosphere: Atmosphere, grid: Grid, workers: Workers
+) -> tuple[DiffuseField, npt.NDArray[np.float32]]:
+    """Moments of the light scattered or reflected exactly once, and its radiance at the nodes.
+
+    The radiance is of shape (altitude, polar, sun, azimuth, wavelength).
+    """
+    scaled = atmosphere.scaled
+    without_peaks = atmosphere._replace(
+        scaled=scaled._replace(peaked=scaled.peaked[:0], phase=scaled.medium.phase),
+        shells=altitude_shells(scaled.medium, FIRST_SHELLS),
+        field=no_field(scaled),
+    )
+    constituents = scaled.medium.phase.shape[0]
+    field = empty_field(scaled, grid.altitude, grid.sun_angle, ORDER)
+    degree = np.arange(ORDER + 1)
+    series = scaled.moments * ((2 * degree + 1) / (4.0 * math.pi))[:, None]
+    radiances = np.empty((grid.altitude.size, *_shape(grid), scaled.mixture.size), np.float32)
+    for i in range(grid.altitude.size):
+        rays = _rays_at(scaled, grid, i)
+        light = trace_rays(without_peaks, *rays.T, max_arc=FIRST_ARC, workers=workers)
+        polynomials = legendre_polynomials(rays[:, 3], ORDER)
+        radiance = light.diffuse
+        for c in range(constituents):
+            radiance += light.single[:, c] * (polynomials.T @ series[c])
+        radiances[i] = radiance.reshape(radiances.shape[1:])
+        project(grid, i, radiances[i], field)
+    return field, radiances
+
+
+def _rays_at(scaled: ScaledMedium, grid: Grid, node: int) -> Array:
+    """Rays in all directions of an altitude's node for all suns, shape (ray, 4)."""
+    mu, sun, azimuth = np.meshgrid(grid.mu[node], grid.sun_angle, grid.azimuth, indexing="ij")
+    mu_s = np.cos(sun)
+    nu = cosine_between(mu, np.sqrt(1.0 - mu**2), mu_s, np.sin(sun), azimuth)
+    # A ray that starts on the ground itself must still see the sky.
+    r = np.full(mu.shape, scaled.medium.r_bottom + max(grid.altitude[node], 1e-8))
+    return np.stack([r, mu, mu_s, nu], axis=-1).reshape(-1, 4)
+
+
+def _shape(grid: Grid) -> tuple[int, int, int]:
+    """Numbers of directions, suns and azimuths that the rays of an altitude stand for."""
+    return grid.mu.shape[1], grid.sun_angle.size, grid.azimuth.size
+
+
+class Batch(NamedTuple):
+    """Directions `begin` to `end` of a grid's altitude `node`, as `Fans`, and their `Samples`."""
+
+    node: int
+    fans: Flat
+    begin: int
+    end: int
+    samples: Flat
+
+
+def trace_grid(scaled: ScaledMedium, grid: Grid) -> list[Batch]:
+    """Trace the grid's directions; their samples serve every pass and every sun."""
+    shells = altitude_shells(scaled.medium, SHELLS)
+    batches = []
+    for node in range(grid.altitude.size):
+        fans = group_rays(_rays_at(scaled, grid, node))
+        begin, end = 0, len(fans.starts)
+        while begin < end:
+            samples = allocate_samples(scaled.medium)
+            stop = trace(scaled.medium, shells, ARC, fans.starts, begin, end, samples)
+            batches.append(Batch(node, flatten(fans), begin, stop, flatten(samples)))
+            begin = stop
+    return batches
+
+
+def scatter_field(
+    scaled: ScaledMedium, field: DiffuseField, grid: Grid, batches: list[Batch], workers: Workers
+) -> tuple[DiffuseField, npt.NDArray[np.float32]]:
+    """Scatter a field once more and transport it; the ground reflects its irradiance.
+
+    Returns moments and radiance as `scatter_sunlight` does.
+    """
+    nodes, wavelengths = grid.altitude.size, field.ground.shape[1]
+    out = np.zeros((nodes, math.prod(_shape(grid)), wavelengths), np.float32)
+    light = [
+        flatten(each) for each in (field, side_by_side(field), no_horizon_peaks(scaled), scaled)
+    ]
+
+    def work(first: int, last: int) -> None:
+        for batch in batches[first:last]:
+            scratch = allocate_scratch(field, batch.fans.value)
+            rays = batch.fans, batch.begin, batch.end, batch.samples
+            add_diffuse(*light, *rays, scratch, out[batch.node])
+
+    workers.run_rows(len(batches), work)
+    scattered = field._replace(
+        radiance=np.empty_like(field.radiance), ground=np.empty_like(field.ground)
+    )
+    shape = *_shape(grid), wavelengths
+
+    def store(first: int, last: int) -> None:
+        for i in range(first, last):
+            project(grid, i, out[i].reshape(shape), scattered)
+
+    workers.run_rows(nodes, store)
+    return scattered, out.reshape(nodes, *shape)
