@@ -49,7 +49,7 @@ def cloudscape(planet, sun, altitude, quality, *, bearing=EAST, wavelengths=AT_5
 
 
 class Errors:
-    """Relative errors of rays against Monte Carlo results, whose noise counts less and is left out."""
+    """Relative errors against Monte Carlo results, whose noise counts less and is left out."""
 
     def __init__(self, got, truth, stderr):
         noise = stderr / truth

