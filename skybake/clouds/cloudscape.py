@@ -117,7 +117,8 @@ class Cloudscape:
     ) -> None:
         self.layers = sorted(layers, key=lambda each: -each.grid.top)
         self.air = air
-        self.altitude = altitude
+        # At the ground itself a ray to the horizon would count as one that hits it.
+        self.altitude = max(altitude, GROUNDED)
         self.sun = sun
         self.weights = weights
         self.depth = depth

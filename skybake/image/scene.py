@@ -30,6 +30,7 @@ from skybake.sky.table import FoldedTable
 
 if TYPE_CHECKING:
     from skybake.clouds.cloudscape import Cloudscape
+    from skybake.image.cloudy import CloudsOver
 
 SURVEY_ROWS = 256
 """Rows of an equirect map by which the light of a scene is judged."""
@@ -327,30 +328,17 @@ class Scene:
         if pixels.min(initial=0.0) < 0.0 or weights.min() < 0.0:
             pixels[pixels @ weights < 0.0] = 0.0
         if self.cloudscape is not None:
-            return self._with_clouds(self.cloudscape, pixels, zenith, azimuth, footprint)
+            return self._clouds_over(self.cloudscape)(pixels, zenith, azimuth, footprint)
         return pixels
 
-    def _with_clouds(
-        self,
-        cloudscape: Cloudscape,
-        pixels: np.ndarray,
-        zenith: Array,
-        azimuth: Array,
-        footprint: Array | float,
-    ) -> np.ndarray:
-        """Put clouds into pixels, in XYZ: of these none is negative, as ratios of light need."""
-        to_rgb = rgb_from_xyz(self.settings.encoding.space)
-        xyz = pixels.reshape(-1, 3) @ np.linalg.inv(to_rgb).T.astype(np.float32)
-        shape = pixels.shape[:2]
-        bearing = np.broadcast_to(azimuth + self.settings.lighting.sun_azimuth, shape).ravel()
-        light, _ = cloudscape.put_into(
-            xyz,
-            np.broadcast_to(zenith, shape).ravel(),
-            bearing,
-            0.5 * float(np.median(footprint)),
-        )
-        cloudy: np.ndarray = (light @ to_rgb.T.astype(np.float32)).reshape(pixels.shape)
-        return cloudy
+    def _clouds_over(self, cloudscape: Cloudscape) -> CloudsOver:
+        from skybake.image.cloudy import CloudsOver
+
+        def clear(zenith: Array, azimuth: Array, footprint: Array) -> np.ndarray:
+            return self._evaluate(self.table, zenith, azimuth, footprint)
+
+        lighting, space = self.settings.lighting, self.settings.encoding.space
+        return CloudsOver(cloudscape, clear, lighting.sun_azimuth, space)
 
     def _evaluate(
         self, table: FoldedTable, zenith: Array, azimuth: Array, footprint: Array | float

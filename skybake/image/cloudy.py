@@ -1,0 +1,88 @@
+"""Clouds in front of a clear sky's pixels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from skybake.clouds.cloudscape import Cloudscape
+from skybake.colour.space import ColourSpace, rgb_from_xyz
+from skybake.optics.medium import Array
+
+RESOLVED = 0.5
+"""Share of a pixel below which the details of clouds are left out."""
+
+WHOLE = 1e-3
+"""Share of a pixel on the other side of the horizon that is neglected."""
+
+
+class CloudsOver:
+    """Puts clouds into pixels.
+
+    Parameters
+    ----------
+    cloudscape : Cloudscape
+        The clouds; its channels are XYZ, in the scale of pixel values.
+    clear : callable
+        The clear sky's pixels at zenith angles and azimuths, with their footprints.
+    sun_azimuth : float
+        Compass bearing from which azimuths count. [rad]
+    space : ColourSpace
+        Of the pixels.
+    """
+
+    def __init__(
+        self,
+        cloudscape: Cloudscape,
+        clear: Callable[[Array, Array, Array], np.ndarray],
+        sun_azimuth: float,
+        space: ColourSpace,
+    ) -> None:
+        self._cloudscape = cloudscape
+        self._clear = clear
+        self._sun_azimuth = sun_azimuth
+        to_rgb = rgb_from_xyz(space)
+        # In XYZ no light is negative, as ratios need.
+        self._to_rgb = to_rgb.T.astype(np.float32)
+        self._to_xyz = np.linalg.inv(to_rgb).T.astype(np.float32)
+
+    def __call__(
+        self, pixels: np.ndarray, zenith: Array, azimuth: Array, footprint: Array | float
+    ) -> np.ndarray:
+        """Return pixels with clouds; parameters are those of `fill_directions` and its result."""
+        shape = pixels.shape[:2]
+        angle, around, extent = (
+            np.broadcast_to(each, shape).ravel() for each in (zenith, azimuth, footprint)
+        )
+        resolved = RESOLVED * float(np.median(extent))
+        out = self._put(pixels.reshape(-1, 3), angle, around, resolved)
+        above = (self._cloudscape.horizon - angle) / extent + 0.5
+        is_both = (above > WHOLE) & (above < 1.0 - WHOLE)
+        if is_both.any():
+            out[is_both] = self._at_horizon(
+                angle[is_both], around[is_both], extent[is_both], resolved
+            )
+        return out.reshape(pixels.shape)
+
+    def _at_horizon(
+        self, zenith: Array, azimuth: Array, footprint: Array, resolved: float
+    ) -> np.ndarray:
+        """Pixels that hold sky and ground: each part has its own clouds."""
+        low, high = zenith - 0.5 * footprint, zenith + 0.5 * footprint
+        horizon = self._cloudscape.horizon
+        total = np.zeros((zenith.size, 3), np.float32)
+        for begin, end in ((low, np.full_like(low, horizon)), (np.full_like(low, horizon), high)):
+            middle, extent = 0.5 * (begin + end), end - begin
+            clear = self._clear(middle[:, None], azimuth[:, None], extent[:, None])[:, 0]
+            share = (extent / footprint).astype(np.float32)
+            total += share[:, None] * self._put(clear, middle, azimuth, resolved)
+        return total
+
+    def _put(
+        self, pixels: np.ndarray, zenith: Array, azimuth: Array, resolved: float
+    ) -> np.ndarray:
+        xyz = pixels @ self._to_xyz
+        bearing = azimuth + self._sun_azimuth
+        light, _ = self._cloudscape.put_into(xyz, zenith, bearing, resolved)
+        return light @ self._to_rgb
