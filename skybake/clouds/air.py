@@ -12,7 +12,7 @@ from skybake.jit.kept import Kept
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.medium import Array, Medium
 from skybake.optics.phase import eval_phase
-from skybake.scattering.atmosphere import atmosphere_key, dark_atmosphere
+from skybake.scattering.atmosphere import atmosphere_key, dark_atmosphere, load_atmosphere
 from skybake.scattering.closure import close_field
 from skybake.scattering.ray import trace_rays
 from skybake.scattering.segments import trace_segments
@@ -73,6 +73,8 @@ class ClearAir:
         Half the angle of the sun's disc. [rad]
     workers : Workers, optional
         Threads that do the work.
+    method : {"full", "hillaire"}, optional
+        By which the light over a bright ground is solved for.
 
     Notes
     -----
@@ -80,8 +82,13 @@ class ClearAir:
     """
 
     def __init__(
-        self, atmosphere: Atmosphere, sun_radius: float, workers: Workers = ALL_CPUS
+        self,
+        atmosphere: Atmosphere,
+        sun_radius: float,
+        workers: Workers = ALL_CPUS,
+        method: str = "full",
     ) -> None:
+        self.method = method
         self.atmosphere = atmosphere
         self.sun_radius = sun_radius
         self.workers = workers
@@ -177,7 +184,14 @@ class ClearAir:
 
     @cached_property
     def _closures(self) -> tuple[Atmosphere, Atmosphere]:
-        key = atmosphere_key(self.atmosphere.medium, "hillaire")
+        medium = self.atmosphere.medium
+        if self.method == "full":
+            # Hillaire's closure lets no light of the sky come back from the ground: at a low sun
+            # two thirds of what a bright one adds.
+            ground = np.full_like(medium.ground_albedo, BRIGHT)
+            bright = medium._replace(ground_albedo=ground)
+            return self.atmosphere, load_atmosphere(bright, self.method, self.workers)
+        key = atmosphere_key(medium, "hillaire")
         return _recent.get(key, lambda: _close(self.atmosphere.medium, self.workers))
 
     def _starts(

@@ -101,7 +101,7 @@ def build_cloudscape(
         raise InputError("clouds: method must be full or hillaire, got march")
     chosen = QUALITIES[quality]
     layers = [_layer(layer, field, sky, weights, chosen, workers) for layer, field in fields]
-    air = ClearAir(sky.atmosphere, sky.source.angular_radius, workers)
+    air = ClearAir(sky.atmosphere, sky.source.angular_radius, workers, sky.table_method)
     sun = sun_vector(sky.sun_azimuth, sky.sun_elevation)
     return Cloudscape(layers, air, sky.altitude, sun, weights, chosen.depth, workers)
 

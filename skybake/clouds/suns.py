@@ -42,5 +42,8 @@ def suns_over(sun: Array, radius: float, altitude: float, top: float) -> Array:
     if low > HIGH_SUN and away < NEAR:
         return sun[None]
     azimuth = math.atan2(sun[0], sun[1])
-    between = [each for each in SUNS if low + CLOSE < each < high - CLOSE]
-    return np.stack([sun_vector(azimuth, each) for each in sorted({low, *between, high})])
+    # The observer's own, over the clouds that are seen best: light grows too fast with the sun's
+    # height to be found between others.
+    others = (low, high, *(each for each in SUNS if low + CLOSE < each < high - CLOSE))
+    apart = [each for each in others if abs(each - elevation) > (CLOSE if each in SUNS else 1e-3)]
+    return np.stack([sun_vector(azimuth, each) for each in sorted({elevation, *apart})])
