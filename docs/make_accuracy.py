@@ -15,7 +15,8 @@ import matplotlib as mpl
 import numpy as np
 
 import skybake
-from skybake.image.scene import Scene, luminous_weights
+from skybake.image.luminous import luminous_weights
+from skybake.image.scene import Scene
 from skybake.preset import load_preset
 from skybake.reference.estimate import radiance
 from skybake.sky.sky import Sky

@@ -14,7 +14,7 @@ import pytest
 
 import skybake
 from skybake.formats.reader import read_image
-from skybake.image.scene import luminous_weights
+from skybake.image.luminous import luminous_weights
 from skybake.inspect.probe import Directions, probe
 from skybake.preset import load_preset
 from skybake.sky.sky import Sky

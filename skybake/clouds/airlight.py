@@ -32,6 +32,8 @@ class AirTable(NamedTuple):
         The same of the rest, without the ground.
     sunlit, skylit : ndarray of float64, shape (ray, channel)
         Light of the ground by the sun and by the sky.
+    ground : ndarray of float64, shape (ray, channel)
+        Light of the ground by an irradiance of 1.
     glow : ndarray of float64, shape (ray, stretch + 2, channel)
         Light that air above clouds has from them, beyond that from the ground.
     transmittance : ndarray of float64, shape (ray, stretch + 1, channel)
@@ -45,6 +47,7 @@ class AirTable(NamedTuple):
     diffuse: Array
     sunlit: Array
     skylit: Array
+    ground: Array
     glow: Array
     transmittance: Array
     total: Array
@@ -61,11 +64,14 @@ class Dimming(NamedTuple):
         Mean radiance with clouds over that without; 1 above them.
     ground : ndarray of float64, shape (channel,)
         The same of the irradiance of the ground by the sky.
+    irradiance : ndarray of float64, shape (channel,)
+        Of the ground by clouds, where hardly any comes from a clear sky that could be compared.
     """
 
     altitude: Array
     ratio: Array
     ground: Array
+    irradiance: Array
 
 
 def shadowed_stretch(
@@ -130,8 +136,10 @@ def build_table(
     transmittance = spans.transmittance @ weights / weights.sum(axis=0)
     ground = np.where(hits[:, None], diffuse[:, -1] - diffuse[:, -2], 0.0)
     diffuse[:, -1] -= ground
-    sunlit = np.zeros_like(ground)
+    sunlit, lambertian = np.zeros_like(ground), np.zeros_like(ground)
     if hits.any():
+        passes = spans.transmittance[hits, -1] * air.albedo / math.pi
+        lambertian[hits] = passes @ weights / weights.sum(axis=0)
         lit = _sunlit_ground(air, altitude, directions[hits], end[hits], sun)
         sunlit[hits] = (lit * spans.transmittance[hits, -1]) @ weights
     sunlit = np.minimum(sunlit, ground)
@@ -151,6 +159,7 @@ def build_table(
         diffuse=diffuse * scale[:, None],
         sunlit=sunlit * scale,
         skylit=(ground - sunlit) * scale,
+        ground=lambertian * scale,
         glow=glow * scale[:, None],
         transmittance=transmittance,
         total=total,
@@ -221,6 +230,8 @@ def fill_lit(
                     sunlit = _mean(table.sunlit[:, c], row[n], weight[n])
                     skylit = _mean(table.skylit[:, c], row[n], weight[n])
                     gathered += sunlit * visible[n, stretches] + skylit * dimming.ground[c]
+                    ground = _mean(table.ground[:, c], row[n], weight[n])
+                    gathered += ground * dimming.irradiance[c]
                 lit[n, q, c] = gathered
 
 

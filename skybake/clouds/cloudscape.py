@@ -58,6 +58,9 @@ NODE_ROWS, NODE_COLUMNS = 96, 256
 
 SUN_POINTS = 32
 
+FAINT = 0.01
+"""Of the light that clouds send down, below which that of a clear sky is not compared with it."""
+
 
 @dataclass(frozen=True, eq=False)
 class Layer:
@@ -185,8 +188,12 @@ class Cloudscape:
         order = np.argsort(altitude, kind="stable")
         lowest = self.solved[-1]
         at = self._nearest(lowest)
-        ground = lowest.down[at] / np.maximum(lowest.down_clear[at], 1e-300)
-        return Dimming(altitude[order] + 1e-9 * np.arange(order.size), ratio[order], ground)
+        down, clear = lowest.down[at], lowest.down_clear[at]
+        is_faint = clear < FAINT * down
+        ground = np.where(is_faint, 1.0, down / np.maximum(clear, 1e-300))
+        irradiance = np.where(is_faint, down, 0.0)
+        altitude = altitude[order] + 1e-9 * np.arange(order.size)
+        return Dimming(altitude, ratio[order], ground, irradiance)
 
     def _nearest(self, solved: SolvedLayer) -> int:
         return int(np.argmin(np.abs(solved.light.sun_mu - self.sun[2])))

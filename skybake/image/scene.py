@@ -8,23 +8,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from skybake.colour.observer import xyz_weights
-from skybake.colour.space import find_colour_space, luminance_weights, rgb_from_xyz
+from skybake.colour.space import luminance_weights, rgb_from_xyz
 from skybake.errors import UnsolvableError
+from skybake.image.luminous import luminous_weights
 from skybake.image.settings import MapSettings
 from skybake.image.stages import Stages
 from skybake.image.sun_size import drawn_radius
 from skybake.jit.arguments import flatten
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.medium import Array
-from skybake.optics.spectrum import star_spectrum
 from skybake.preset import Planet
 from skybake.projection.cells import Cells
 from skybake.projection.equirect import column_bearings, row_zeniths
 from skybake.sky.disc import Disc
 from skybake.sky.drawn_disc import DrawnDisc
 from skybake.sky.pixels import allocate_pixels, fill_directions
-from skybake.sky.sky import WAVELENGTHS, Sky
+from skybake.sky.sky import Sky
 from skybake.sky.spectral_table import radiance_at_nodes
 from skybake.sky.table import FoldedTable
 
@@ -51,18 +50,6 @@ CLOUDY_PROBE_AZIMUTHS = 128
 CELLS_AT_ONCE = 32768
 
 _LAYERS = {"include": ("sky", "sun"), "exclude": ("sky",), "only": ("sun",)}
-
-
-def luminous_weights(sky: Sky) -> Array:
-    """Weights from radiance per unit irradiance [sr⁻¹] to XYZ [cd m⁻²], (wavelength, 3)."""
-    star = star_spectrum(sky.star)
-    if sky.planet.rendering == "spectral":
-        return xyz_weights(sky.wavelengths, *star)
-    # Three wavelengths stand for R, G and B, and the sun for white of its illuminance.
-    illuminance = xyz_weights(WAVELENGTHS, *star)[:, 1].sum()
-    xyz_from_rgb = np.linalg.inv(rgb_from_xyz(find_colour_space("lin_rec709")))
-    weights: Array = illuminance * xyz_from_rgb.T
-    return weights
 
 
 @cache

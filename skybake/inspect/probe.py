@@ -13,7 +13,8 @@ import numpy as np
 from skybake.angles import cosine_between
 from skybake.errors import InputError, UnsolvableError
 from skybake.image.light import light_of_scene
-from skybake.image.scene import DARK, ROUNDING, Scene, luminous_weights
+from skybake.image.luminous import luminous_weights
+from skybake.image.scene import DARK, ROUNDING, Scene
 from skybake.image.settings import Clouds, Lighting, MapSettings, View
 from skybake.inspect.clouded import clouded_light
 from skybake.inspect.traced import traced_radiance

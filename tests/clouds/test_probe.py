@@ -7,7 +7,7 @@ import pytest
 
 from skybake.clouds.build import build_cloudscape
 from skybake.clouds.cloudscape import unit_vectors
-from skybake.image.scene import luminous_weights
+from skybake.image.luminous import luminous_weights
 from skybake.jit.workers import Workers
 from skybake.preset import load_preset
 from skybake.sky.sky import Sky
