@@ -11,6 +11,7 @@ import numpy.typing as npt
 from skybake.clouds.air import ClearAir
 from skybake.jit.kernel import kernel
 from skybake.optics.medium import Array
+from skybake.scattering.segments import SHORTEST
 
 STRETCHES = 12
 CROWDING = 1.3
@@ -128,8 +129,9 @@ def build_table(
     """
     begin, end, hits = shadowed_stretch(altitude, directions, air.radius, top)
     distance = stretch_ends(begin, end)
-    # Stay above the ground, whose light belongs to what is behind.
-    distance[hits, -1] *= 1.0 - 1e-7
+    # Stay above the ground, whose light belongs to what is behind, also once they are rounded.
+    last = np.maximum(np.floor(end[hits] / SHORTEST) - 1.0, 0.0) * SHORTEST
+    distance[hits] = np.minimum(distance[hits], last[:, None])
     spans = air.spans(altitude, directions, distance, sun)
     single = spans.single @ weights
     diffuse = spans.diffuse @ weights
