@@ -28,7 +28,7 @@ TABLES_FOLDER = "atmospheres"
 TABLES_SUFFIX = ".tables"
 
 KERNEL_SOURCES = (
-    "jit", "optics", "transport", "cloud_fields", "scattering", "reference", "sky",
+    "jit", "optics", "transport", "cloud_fields", "scattering", "reference", "sky", "clouds",
     "formats/half.py",
 )  # fmt: skip
 """Packages and modules that hold kernels, or what kernels are made from."""

@@ -46,10 +46,9 @@ COARSE_DOWNWARD = 6
 
 # Spacing of the sun's zenith angles by its depression: fine where the planet's shadow passes
 # through the atmosphere, which is sooner in shallow air, and not too wide at the zenith, near
-# which moments vary as sin(angle)**m. What a deeper sun lights is seen by none higher: at -18
-# degrees light comes from where it is higher.
-_SPACING_AT = np.array([-40.0, -15.0, -4.0, 0.0, 14.0, 16.0, 20.0, 22.0, 35.0])
-_SPACING = np.array([8.0, 5.0, 1.6, 0.8, 0.8, 1.2, 2.0, 2.5, 5.0])
+# which moments vary as sin(angle)**m.
+_SPACING_AT = np.array([-40.0, -15.0, -4.0, 0.0, 14.0, 22.0, 35.0])
+_SPACING = np.array([8.0, 5.0, 1.6, 0.8, 0.8, 1.0, 4.0])
 _SPACING_AT_ZENITH = 10.0
 
 

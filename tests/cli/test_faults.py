@@ -164,7 +164,7 @@ def test_malformed_toml_is_named_with_line_and_column(tmp_path, monkeypatch):
 def test_an_unknown_preset_lists_the_known_ones(tmp_path, monkeypatch, command):
     monkeypatch.chdir(tmp_path)
     result = invoke(*command, "venus")
-    check_fault(result, 1, "unknown preset 'venus'; known presets: earth, earth-clear, ")
+    check_fault(result, 1, "unknown preset 'venus'; known presets: earth, earth-broken, ")
     assert listing(tmp_path) == []
 
 
