@@ -145,7 +145,7 @@ class ClearAir:
         Light over a ground of albedo A is L0 + c A / (1 - s A), where s is what the air returns
         of light from below; two albedos tell s by the irradiance E0 / (1 - s A) of the ground.
         """
-        dark, bright = self._closures
+        dark, bright = self._grounds
         sun = dark.field.sun_angle
         noon = int(np.argmin(np.abs(sun - math.pi / 3.0)))
         count = self.albedo.size
@@ -163,7 +163,7 @@ class ClearAir:
     def over_bright(self, altitude: float, directions: Array, sun: Array) -> Array:
         """Light that a ground of albedo `BRIGHT` would add, shape (n, wavelength). [sr⁻¹]"""
         rays = self._starts(altitude, directions[:, 2], sun, directions @ sun)
-        dark, bright = (_trace(each, rays, self.workers).diffuse for each in self._closures)
+        dark, bright = (_trace(each, rays, self.workers).diffuse for each in self._grounds)
         more: Array = bright - dark
         return more
 
@@ -177,13 +177,14 @@ class ClearAir:
         count = self.albedo.size
         dark, bright = (
             trace_segments(each, *rays, ends, workers=self.workers).diffuse[..., :count]
-            for each in self._closures
+            for each in self._grounds
         )
         more: Array = bright.astype(float) - dark
         return more
 
     @cached_property
-    def _closures(self) -> tuple[Atmosphere, Atmosphere]:
+    def _grounds(self) -> tuple[Atmosphere, Atmosphere]:
+        """The air over its own ground and over a bright one."""
         medium = self.atmosphere.medium
         if self.method == "full":
             # Hillaire's closure lets no light of the sky come back from the ground: at a low sun
@@ -192,7 +193,7 @@ class ClearAir:
             bright = medium._replace(ground_albedo=ground)
             return self.atmosphere, load_atmosphere(bright, self.method, self.workers)
         key = atmosphere_key(medium, "hillaire")
-        return _recent.get(key, lambda: _close(self.atmosphere.medium, self.workers))
+        return _recent.get(key, lambda: _close(medium, self.workers))
 
     def _starts(
         self, altitude: float, mu: Array, sun: Array, nu: Array

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.clouds.air import ClearAir
+from skybake.clouds.dimming import dimming_at
 from skybake.jit.kernel import kernel
 from skybake.optics.medium import Array
 from skybake.scattering.segments import SHORTEST
@@ -52,27 +53,6 @@ class AirTable(NamedTuple):
     glow: Array
     transmittance: Array
     total: Array
-
-
-class Dimming(NamedTuple):
-    """How clouds change the diffuse light around them.
-
-    Attributes
-    ----------
-    altitude : ndarray of float64, shape (level,)
-        Ascending. [km]
-    ratio : ndarray of float64, shape (level, channel)
-        Mean radiance with clouds over that without; 1 above them.
-    ground : ndarray of float64, shape (channel,)
-        The same of the irradiance of the ground by the sky.
-    irradiance : ndarray of float64, shape (channel,)
-        Of the ground by clouds, where hardly any comes from a clear sky that could be compared.
-    """
-
-    altitude: Array
-    ratio: Array
-    ground: Array
-    irradiance: Array
 
 
 def shadowed_stretch(
@@ -260,20 +240,3 @@ def _gained(values, row, weight, q, channel):
 def _middle(distance, row, weight, q):
     """Distance of the middle of a stretch. [km]"""
     return 0.5 * (_mean(distance[:, q - 1], row, weight) + _mean(distance[:, q], row, weight))
-
-
-@kernel
-def dimming_at(dimming, h, channel):
-    """Ratio of diffuse light at an altitude."""
-    levels = dimming.altitude.size
-    if h >= dimming.altitude[levels - 1]:
-        return 1.0
-    if h <= dimming.altitude[0]:
-        return dimming.ratio[0, channel]
-    k = 0
-    while h > dimming.altitude[k + 1]:
-        k += 1
-    u = (h - dimming.altitude[k]) / (dimming.altitude[k + 1] - dimming.altitude[k])
-    return dimming.ratio[k, channel] + u * (
-        dimming.ratio[k + 1, channel] - dimming.ratio[k, channel]
-    )

@@ -11,9 +11,10 @@ from skybake.cloud_fields.build import build_field
 from skybake.cloud_fields.field import LINEAR, SURFACE, CloudField
 from skybake.cloud_fields.light_grid import light_grid
 from skybake.clouds.air import ClearAir
-from skybake.clouds.cloudscape import Cloudscape, Layer
+from skybake.clouds.cloudscape import Cloudscape
 from skybake.clouds.directions import sun_vector
 from skybake.clouds.layer import Grid
+from skybake.clouds.unlit import Layer
 from skybake.errors import InputError
 from skybake.jit.workers import Workers
 from skybake.optics.medium import Array

@@ -4,26 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
-from skybake.cloud_fields.field import SURFACE, CloudField
+from skybake.cloud_fields.field import SURFACE
 from skybake.clouds.air import GROUNDED, ClearAir
 from skybake.clouds.airlight import (
     AirTable,
-    Dimming,
     build_table,
-    fill_lit,
     shadowed_stretch,
     stretch_ends,
 )
 from skybake.clouds.compose import compose
+from skybake.clouds.dimming import Dimming, dimming_by
 from skybake.clouds.directions import fill_places, node_directions, unit_vectors
 from skybake.clouds.layer import (
-    Grid,
     SolvedLayer,
     Surroundings,
     channels_to_wavelengths,
@@ -32,9 +29,9 @@ from skybake.clouds.layer import (
 )
 from skybake.clouds.march import Marching
 from skybake.clouds.particles import divide_phase
-from skybake.clouds.quadrature import double_gauss
-from skybake.clouds.sight import Eye, dim_rays, see_layer
+from skybake.clouds.sight import Eye, dim_rays, light_rays, see_layer
 from skybake.clouds.suns import suns_over
+from skybake.clouds.unlit import Layer
 from skybake.jit.arguments import flatten
 from skybake.jit.workers import Workers
 from skybake.optics.medium import Array
@@ -57,34 +54,6 @@ NODE_ROWS, NODE_COLUMNS = 96, 256
 """The same, all around, of places for which shadows are looked up."""
 
 SUN_POINTS = 32
-
-FAINT = 0.01
-"""Of the light that clouds send down, below which that of a clear sky is not compared with it."""
-
-
-@dataclass(frozen=True, eq=False)
-class Layer:
-    """One layer: where its clouds are, the voxels of its light, and how it scatters.
-
-    Attributes
-    ----------
-    field : CloudField
-        Where clouds are.
-    grid : Grid
-        Mean extinction on the voxels of its light.
-    phase : ndarray of float64, shape (SCATTERING_ANGLES, channel)
-        Phase function of what is scattered once. [sr⁻¹]
-    middle : ndarray of float64, shape (SCATTERING_ANGLES,)
-        Of what is scattered more often. [sr⁻¹]
-    order : int
-        Degree to which its light is resolved.
-    """
-
-    field: CloudField
-    grid: Grid
-    phase: Array
-    middle: Array
-    order: int
 
 
 class Cloudscape:
@@ -171,29 +140,9 @@ class Cloudscape:
     @cached_property
     def dimming(self) -> Dimming:
         """How clouds change the diffuse light in and below them."""
-        quadrature = double_gauss(7, 0.0)
-        altitudes, ratios = [], []
-        for layer, solved in zip(self.layers, self.solved, strict=True):
-            levels = layer.grid.levels
-            edges = np.array([layer.grid.base, layer.grid.top])
-            clear = []
-            for altitude in edges.tolist():
-                light = self.air.light_at(altitude, -quadrature.direction, self.sun)
-                clear.append(quadrature.weight @ ((light.single + light.diffuse) @ self.weights))
-            share = ((levels - edges[0]) / (edges[1] - edges[0]))[:, None]
-            between = np.maximum(clear[0] + share * (clear[1] - clear[0]), 1e-300)
-            altitudes.append(levels)
-            ratios.append(solved.mean_radiance[self._nearest(solved)] / between)
-        altitude, ratio = np.concatenate(altitudes), np.concatenate(ratios)
-        order = np.argsort(altitude, kind="stable")
-        lowest = self.solved[-1]
-        at = self._nearest(lowest)
-        down, clear = lowest.down[at], lowest.down_clear[at]
-        is_faint = clear < FAINT * down
-        ground = np.where(is_faint, 1.0, down / np.maximum(clear, 1e-300))
-        irradiance = np.where(is_faint, down, 0.0)
-        altitude = altitude[order] + 1e-9 * np.arange(order.size)
-        return Dimming(altitude, ratio[order], ground, irradiance)
+        at = [self._nearest(solved) for solved in self.solved]
+        grids = [layer.grid for layer in self.layers]
+        return dimming_by(grids, self.solved, at, self.air, self.weights, self.sun)
 
     def _nearest(self, solved: SolvedLayer) -> int:
         return int(np.argmin(np.abs(solved.light.sun_mu - self.sun[2])))
@@ -226,17 +175,8 @@ class Cloudscape:
         self, table: AirTable, row: np.ndarray, weight: Array, directions: Array, visible: Floats
     ) -> tuple[Floats, Floats]:
         """Light of the air with clouds around, see `fill_lit`."""
-        channels, stretches = self.weights.shape[1], visible.shape[1] - 1
-        lit = np.empty((len(directions), stretches + 2, channels), np.float32)
-        through = np.empty((len(directions), stretches + 1, channels), np.float32)
-        given = [flatten(each) for each in (table, row, weight, self.dimming)]
-        rays = flatten(directions), flatten(visible)
-
-        def work(first: int, last: int) -> None:
-            fill_lit(*given, self.air.radius, self.altitude, *rays, first, last, lit, through)
-
-        self.workers.run_rows(len(directions), work, chunk=AT_ONCE)
-        return lit, through
+        given = table, row, weight, self.dimming
+        return light_rays(*given, self.eye, directions, visible, self.workers)
 
     def see(self, directions: Array, pixel: float) -> tuple[Floats, Floats]:
         """Follow rays through every layer, see `fill_march`.
@@ -274,8 +214,8 @@ class Cloudscape:
         return seen, passing
 
     @cached_property
-    def nodes(self) -> tuple[AirTable, Floats, Floats, Array]:
-        """Light of the air in all directions: its table; `lit`, `through`, distances at nodes."""
+    def nodes(self) -> tuple[Floats, Floats, Array]:
+        """Light of the air in all directions: `lit`, `through` and distances at nodes."""
         sun_azimuth = math.atan2(self.sun[0], self.sun[1])
         zenith, azimuth = node_directions(
             self.first, self.horizon, TABLE_ROWS, TABLE_COLUMNS, is_half=True
@@ -301,7 +241,7 @@ class Cloudscape:
         distance = stretch_ends(begin, end)
         visible = self.visible(directions, distance)
         lit, through = self.lit(table, row, weight, directions, visible)
-        return table, lit, through, distance
+        return lit, through, distance
 
     @property
     def horizon(self) -> float:
@@ -315,7 +255,7 @@ class Cloudscape:
 
     @property
     def _place(self) -> float:
-        return self.air.radius + max(self.altitude, GROUNDED)
+        return self.air.radius + self.altitude
 
     @property
     def _roof(self) -> float:
@@ -341,7 +281,7 @@ class Cloudscape:
         opacity : ndarray of float32, shape (ray,)
             Share of what is behind that clouds hide.
         """
-        _, lit, through, distance = self.nodes
+        lit, through, distance = self.nodes
         directions = unit_vectors(zenith, bearing)
         seen, passing = self.see(directions, pixel)
         row, weight = np.empty((zenith.size, 4), np.int64), np.empty((zenith.size, 4))

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.clouds.harmonics import degrees, harmonics_of
+from skybake.clouds.merging import merge_levels, merge_pairs, spread_pairs
 from skybake.clouds.ordinates import Sweep, sweep
 from skybake.clouds.quadrature import Quadrature
 from skybake.jit.arguments import Flat, flatten
@@ -183,12 +184,12 @@ def _solve_channel(
 def _start(voxels: Voxels, scattering: Scattering, entering: Entering, out: Floats) -> int:
     """Write moments that were found on merged voxels; return how many passes that took."""
     merged = _merge(voxels)
-    light = entering._replace(sun=_merge_levels(entering.sun, merged.extinction.shape[0]))
+    light = entering._replace(sun=merge_levels(entering.sun, merged.extinction.shape[0]))
     shape = (*merged.extinction.shape[:2], out.shape[2], merged.extinction.shape[2])
     state = np.zeros(shape, np.float32)
     number = _start(merged, scattering, light, state) if _can_merge(merged, SMALL) else 0
     *_, more = _Passes(merged, scattering, light).until_settled(state, MAX_PASSES, ROUGH)
-    _spread(state, 2, out)
+    spread_pairs(state, out)
     return number + more
 
 
@@ -313,41 +314,3 @@ def _merge(voxels: Voxels) -> Voxels:
         extinction > 0.0, scattered / np.maximum(extinction, 1e-9), merge_pairs(voxels.beam)
     )
     return Voxels(extinction, 2.0 * voxels.spacing, beam.astype(np.float32), voxels.leaving)
-
-
-def merge_pairs(values: Floats) -> Floats:
-    """Means of each two values along every axis; an odd last plane in z is joined by nothing."""
-    levels, rows, columns = values.shape
-    if levels % 2:
-        values = np.concatenate([values, np.zeros((1, rows, columns), values.dtype)])
-    blocks = values.reshape((levels + 1) // 2, 2, rows // 2, 2, columns // 2, 2)
-    merged: Floats = blocks.mean(axis=(1, 3, 5), dtype=np.float32)
-    return merged
-
-
-def _merge_levels(light: Array, levels: int) -> Array:
-    padded = np.concatenate([light, light[:, -1:]], axis=1) if light.shape[1] % 2 else light
-    merged: Array = padded.reshape(len(light), levels, 2).mean(axis=2)
-    return merged
-
-
-def _spread(coarse: Floats, factor: int, out: Floats) -> None:
-    """Interpolate moments (z, y, harmonic, x) linearly to a grid that is finer by `factor`."""
-    for axis, is_periodic in ((0, False), (1, True), (3, True)):
-        coarse = _spread_axis(coarse, factor, axis, out.shape[axis], is_periodic=is_periodic)
-    out[...] = coarse
-
-
-def _spread_axis(values: Floats, factor: int, axis: int, size: int, *, is_periodic: bool) -> Floats:
-    place = (np.arange(size) + 0.5) / factor - 0.5
-    low = np.floor(place).astype(int)
-    share = (place - low).astype(np.float32)
-    count = values.shape[axis]
-    if is_periodic:
-        pair = low % count, (low + 1) % count
-    else:
-        pair = np.clip(low, 0, count - 1), np.clip(low + 1, 0, count - 1)
-    share = share.reshape([-1 if each == axis else 1 for each in range(values.ndim)])
-    a, b = (np.take(values, each, axis=axis) for each in pair)
-    spread: Floats = a + share * (b - a)
-    return spread

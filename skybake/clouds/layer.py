@@ -16,11 +16,11 @@ from skybake.clouds.diffuse import (
     Entering,
     Scattering,
     Voxels,
-    merge_pairs,
     solve_diffuse,
 )
 from skybake.clouds.harmonics import degrees
 from skybake.clouds.light import LayerLight
+from skybake.clouds.merging import merge_pairs
 from skybake.clouds.particles import Particles
 from skybake.clouds.quadrature import Quadrature, cell_samples, double_gauss
 from skybake.jit.workers import Workers

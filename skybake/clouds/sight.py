@@ -8,6 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.cloud_fields.field import CloudField
+from skybake.clouds.airlight import AirTable, fill_lit
+from skybake.clouds.dimming import Dimming
 from skybake.clouds.layer import SolvedLayer
 from skybake.clouds.light import LayerLight
 from skybake.clouds.march import Marching, allocate_march, fill_march
@@ -87,3 +89,27 @@ def dim_rays(
         dim_visibility(*given, eye.radius, eye.altitude, *rays, first, last, np.empty(3), out)
 
     workers.run_rows(len(directions), work, chunk=RAYS)
+
+
+def light_rays(
+    table: AirTable,
+    row: npt.NDArray[np.int64],
+    weight: Array,
+    dimming: Dimming,
+    eye: Eye,
+    directions: Array,
+    visible: Floats,
+    workers: Workers,
+) -> tuple[Floats, Floats]:
+    """Call `fill_lit` for all rays; return its `lit` and `through`."""
+    channels, stretches = table.total.shape[1], visible.shape[1] - 1
+    lit = np.empty((len(directions), stretches + 2, channels), np.float32)
+    through = np.empty((len(directions), stretches + 1, channels), np.float32)
+    given = [flatten(each) for each in (table, row, weight, dimming)]
+    rays = flatten(directions), flatten(visible)
+
+    def work(first: int, last: int) -> None:
+        fill_lit(*given, eye.radius, eye.altitude, *rays, first, last, lit, through)
+
+    workers.run_rows(len(directions), work, chunk=RAYS)
+    return lit, through

@@ -28,6 +28,11 @@ profile = { kind = "exponential", scale_height_km = 5.0 }
 phase = { kind = "henyey-greenstein", asymmetry = 0.7 }
 """
 
+CUMULUS = """
+[clouds.low]
+kind = "cumulus"
+"""
+
 
 def write(folder: Path, old: str = "", new: str = "", text: str = MINIMAL) -> Path:
     assert old in text
@@ -54,3 +59,9 @@ def message_about(path: Path) -> str:
     assert len(message.splitlines()) == 1
     assert message.startswith(f"{path}: ")
     return message.removeprefix(f"{path}: ")
+
+
+def only_layer(folder, more="", text=CUMULUS):
+    """The layer of clouds of a world that has one."""
+    (only,) = load_preset(write(folder, new=f"{text}{more}\n")).clouds
+    return only

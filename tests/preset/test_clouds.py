@@ -1,15 +1,11 @@
 """Layers of clouds in presets."""
 
-import hashlib
-import json
 import math
 import subprocess
 import sys
 import warnings
-import zipfile
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from skybake.errors import PresetError, PresetWarning
@@ -18,30 +14,13 @@ from skybake.preset import (
     DoubleHenyeyGreensteinPhase,
     HenyeyGreensteinPhase,
     TabulatedPhase,
-    Tile,
     load_preset,
     preset_template,
     resolved_text,
 )
 from skybake.preset.cloud_kinds import DEFAULTS
 from skybake.preset.clouds_model import KINDS
-from tests.preset.files import message_about, write
-
-CUMULUS = """
-[clouds.low]
-kind = "cumulus"
-"""
-
-
-def layer(folder, more="", text=CUMULUS):
-    (only,) = load_preset(write(folder, new=f"{text}{more}\n")).clouds
-    return only
-
-
-def save_tile(path, extinction=None, spacing=(0.05, 0.1, 0.2), **others):
-    extinction = np.zeros((4, 8, 6), np.float32) if extinction is None else extinction
-    np.savez(path, extinction_per_km=extinction, spacing_km=np.array(spacing), **others)
-    return path
+from tests.preset.files import CUMULUS, message_about, only_layer, write
 
 
 def test_a_world_without_the_table_has_no_clouds_and_a_recipe_as_ever(tmp_path):
@@ -61,7 +40,7 @@ def test_a_world_without_clouds_imports_nothing_of_them():
 @pytest.mark.parametrize("kind", KINDS[:-1])
 def test_what_is_not_given_is_usual_for_the_kind(tmp_path, kind):
     usual = DEFAULTS[kind]
-    found = layer(tmp_path, text=CUMULUS.replace("cumulus", kind))
+    found = only_layer(tmp_path, text=CUMULUS.replace("cumulus", kind))
     assert (found.name, found.kind, found.tile) == ("low", kind, None)
     assert (found.base, found.depth, found.size) == (usual.base, usual.depth, usual.size)
     assert (found.cover, found.optical_depth) == (usual.cover, usual.optical_depth)
@@ -71,7 +50,7 @@ def test_what_is_not_given_is_usual_for_the_kind(tmp_path, kind):
 
 
 def test_all_that_is_given_is_in_the_layer(tmp_path):
-    found = layer(
+    found = only_layer(
         tmp_path,
         "base_km = 2\ndepth_km = 0.5\nsize_km = 3\ncover = 0.25\noptical_depth = 7\n"
         "seed = 11\nwind_m_s = [10.0, -90.0]",
@@ -90,7 +69,7 @@ def test_all_that_is_given_is_in_the_layer(tmp_path):
     ],
 )
 def test_cover_is_a_share_or_oktas(tmp_path, cover, share):
-    assert layer(tmp_path, f"cover = {cover}").cover == pytest.approx(share)
+    assert only_layer(tmp_path, f"cover = {cover}").cover == pytest.approx(share)
 
 
 def test_oktas_are_no_file_for_the_recipe(tmp_path):
@@ -100,20 +79,20 @@ def test_oktas_are_no_file_for_the_recipe(tmp_path):
 
 
 def test_the_optical_depth_follows_from_water_and_droplets(tmp_path):
-    found = layer(tmp_path, "liquid_water_path_g_m2 = 100\neffective_radius_um = 7.5")
+    found = only_layer(tmp_path, "liquid_water_path_g_m2 = 100\neffective_radius_um = 7.5")
     assert found.optical_depth == pytest.approx(1.5 * 0.1 / (1000 * 7.5e-6))
 
 
 def test_a_table_as_of_a_constituent_is_a_phase_function_that_may_be_sharper(tmp_path):
     sharp = 'phase = { kind = "henyey-greenstein", asymmetry = 0.95 }'
-    phase = layer(tmp_path, sharp).phase
+    phase = only_layer(tmp_path, sharp).phase
     assert isinstance(phase, HenyeyGreensteinPhase)
     assert phase.asymmetry.values == (0.95,)
     double = (
         'phase = { kind = "double-henyey-greenstein", first_asymmetry = 0.9, '
         "second_asymmetry = -0.2, first_fraction = 0.8 }"
     )
-    assert isinstance(layer(tmp_path, double).phase, DoubleHenyeyGreensteinPhase)
+    assert isinstance(only_layer(tmp_path, double).phase, DoubleHenyeyGreensteinPhase)
     message = message_about(write(tmp_path, new=f"{CUMULUS}{sharp.replace('0.95', '0.96')}\n"))
     assert message == "clouds.low.phase.asymmetry: must be at most 0.95, got 0.96"
 
@@ -285,120 +264,6 @@ def test_what_is_resolved_loads_as_the_same_world(tmp_path):
 
 def test_a_template_lists_the_layers():
     assert '[clouds.low]\n# kind = "cumulus"' in preset_template("own", "earth-fair")
-
-
-def test_a_tile_of_the_users_is_a_layer_and_its_digest_is_in_the_recipe(tmp_path):
-    file = save_tile(tmp_path / "cloud.npz")
-    text = '\n[clouds.own]\ntile = "cloud.npz"\nbase_km = 1.5\n'
-    found = layer(tmp_path, 'interpolation = "constant"\norigin_km = [0.1, -0.2]', text)
-    digest = hashlib.sha256(file.read_bytes()).hexdigest()
-    assert found.tile == Tile(str(file.resolve()), digest, "constant", (0.1, -0.2))
-    assert (found.kind, found.base, found.optical_depth, found.cover) == ("tile", 1.5, 0.0, 1.0)
-    assert found.depth == pytest.approx(4 * 0.05)
-    assert found.size == pytest.approx(min(8 * 0.1, 6 * 0.2))
-    planet = load_preset(write(tmp_path, new=text))
-    assert planet.recipe["files"] == {"cloud.npz": digest}
-    assert json.loads(json.dumps(planet.recipe)) == planet.recipe
-
-
-def test_compressed_tiles_in_single_precision_are_read_too(tmp_path):
-    np.savez_compressed(
-        tmp_path / "cloud.npz",
-        extinction_per_km=np.zeros((2, 3, 4)),
-        spacing_km=np.float32([0.5, 1, 1]),
-    )
-    found = layer(tmp_path, text='\n[clouds.own]\ntile = "cloud.npz"\nbase_km = 1\n')
-    assert (found.depth, found.size) == (1.0, 3.0)
-
-
-def test_a_tile_may_take_the_place_of_a_kind(tmp_path):
-    save_tile(tmp_path / "cloud.npz")
-    path = tmp_path / "own.toml"
-    path.write_text('extends = "earth-fair"\n[clouds.low]\ntile = "cloud.npz"\nbase_km = 1\n')
-    (low,) = load_preset(path).clouds
-    assert low.kind == "tile"
-
-
-def spoil(path, name, content):
-    save_tile(path)
-    with zipfile.ZipFile(path) as archive:
-        members = {one: archive.read(one) for one in archive.namelist()}
-    with zipfile.ZipFile(path, "w") as archive:
-        for one, data in (members | {name: content}).items():
-            archive.writestr(one, data)
-
-
-TILE_FAULTS = [
-    (lambda path: None, "tile: 'cloud.npz': cannot be read: No such file or directory"),
-    (lambda path: path.mkdir(), "tile: 'cloud.npz': must be a regular file, got a folder"),
-    (lambda path: path.write_bytes(b"no zip"), "tile: 'cloud.npz' must be an archive of numpy's"),
-    (
-        lambda path: np.savez(path, density=np.zeros(3)),
-        "tile: 'cloud.npz' must hold the arrays extinction_per_km and spacing_km, got density",
-    ),
-    (
-        lambda path: save_tile(path, np.zeros((3, 3))),
-        "tile: 'cloud.npz': extinction_per_km must run along z, y and x, got shape (3, 3)",
-    ),
-    (
-        lambda path: save_tile(path, np.zeros((3, 0, 3))),
-        "tile: 'cloud.npz': extinction_per_km must run along z, y and x, got shape (3, 0, 3)",
-    ),
-    (
-        lambda path: save_tile(path, spacing=(0.1, 0.1)),
-        "tile: 'cloud.npz': spacing_km must be three numbers greater than 0 for z, y and x",
-    ),
-    (
-        lambda path: save_tile(path, spacing=(0.1, math.nan, 0.1)),
-        "tile: 'cloud.npz': spacing_km must be three numbers greater than 0 for z, y and x",
-    ),
-    (
-        lambda path: save_tile(path, spacing=(20, 0.1, 0.1)),
-        "base_km: the clouds must end below the atmosphere's top at 50 km, got 81 km",
-    ),
-    (
-        lambda path: spoil(path, "extinction_per_km.npy", b"\x93NUMPY\x01\x00\x09\x00{'shape':"),
-        "tile: 'cloud.npz' must be an archive of numpy's, as numpy.savez writes: an array's header",
-    ),
-    (
-        lambda path: spoil(path, "extinction_per_km.npy", b""),
-        "tile: 'cloud.npz' must be an archive of numpy's, as numpy.savez writes: an array has no",
-    ),
-]
-
-
-@pytest.mark.parametrize(("make", "message"), TILE_FAULTS)
-def test_a_tile_that_is_none_is_named_in_one_line(tmp_path, make, message):
-    make(tmp_path / "cloud.npz")
-    path = write(tmp_path, new='\n[clouds.own]\ntile = "cloud.npz"\nbase_km = 1\n')
-    assert message_about(path).startswith(f"clouds.own.{message}")
-
-
-@pytest.mark.parametrize(
-    ("lines", "message"),
-    [
-        ('tile = "cloud.npz"', ".base_km: must be given"),
-        ('tile = "cloud.vdb"\nbase_km = 1', ".tile: must be a file that ends in .npz, got 'cloud"),
-        ("tile = 3\nbase_km = 1", ".tile: must be a line of text, got 3"),
-        (
-            'tile = "../cloud.npz"\nbase_km = 1',
-            ".tile: '../cloud.npz': must be in the preset's folder or an absolute path",
-        ),
-        (
-            'tile = "cloud.npz"\nbase_km = 1\ninterpolation = "cubic"',
-            ".interpolation: must be one of linear, constant, got 'cubic'",
-        ),
-        (
-            'tile = "cloud.npz"\nbase_km = 1\norigin_km = [1, 2, 3]',
-            ".origin_km: must be two numbers, got 3",
-        ),
-        ('tile = "cloud.npz"\nbase_km = 1\ncover = 0.3', ": unknown key 'cover'; known keys: "),
-    ],
-)
-def test_a_broken_rule_of_tiles_is_named_in_one_line(tmp_path, lines, message):
-    save_tile(tmp_path / "cloud.npz")
-    found = message_about(write(tmp_path, new=f"\n[clouds.own]\n{lines}\n"))
-    assert found.startswith(f"clouds.own{message}")
 
 
 def test_a_preset_that_covers_more_than_the_droplets_tables_is_refused(tmp_path):
