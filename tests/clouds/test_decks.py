@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from skybake.clouds.build import build_cloudscape
-from skybake.clouds.cloudscape import unit_vectors
+from skybake.clouds.directions import unit_vectors
 from skybake.inspect.probe import probe, read_directions
 from skybake.jit.workers import Workers
 from skybake.preset import load_preset
@@ -14,20 +14,22 @@ from skybake.sky.sky import Sky
 from tests.clouds.tile_worlds import tile_world
 from tests.reference.cloud_scenes import cloud_table
 
-VACUUM = '[ground]\nalbedo = 0.0\n[constituents]\nair = "none"\nozone = "none"\naerosol = "none"\n'
+AIRLESS = '[constituents]\nair = "none"\nozone = "none"\naerosol = "none"\n'
+VACUUM = f"[ground]\nalbedo = 0.0\n{AIRLESS}"
 
 
-def deck_world(folder, optical_depth):
-    """A deck of one voxel from 1 to 2 km above a black ground without air."""
+def deck_world(folder, optical_depth, ground=0.0):
+    """A deck of one voxel from 1 to 2 km above a ground without air."""
     deck = np.full((1, 1, 1), optical_depth)
-    return load_preset(tile_world(folder, deck, (1.0, 1.0, 1.0), settings=VACUUM))
+    settings = f"[ground]\nalbedo = {ground}\n{AIRLESS}"
+    return load_preset(tile_world(folder, deck, (1.0, 1.0, 1.0), settings=settings))
 
 
-def errors(folder, optical_depth, sun, side):
+def errors(folder, optical_depth, sun, side, ground=0.0):
     """Relative errors of radiances beyond 8 deg from the sun, seen from below or above."""
     rows = cloud_table("deck_DISORT")
     rows = rows[(rows["tau"] == optical_depth) & (rows["sun_elevation_deg"] == sun)]
-    rows = rows[(rows["ground_albedo"] == 0.0) & (rows["side"] == side)]
+    rows = rows[(rows["ground_albedo"] == ground) & (rows["side"] == side)]
     rows = rows[(rows["abs_mu_view"] > 0.1) & (rows["scattering_angle_deg"] > 8.0)]
     assert len(rows) >= 6
     slope = rows["abs_mu_view"] * (1.0 if side == "below" else -1.0)
@@ -38,7 +40,7 @@ def errors(folder, optical_depth, sun, side):
         )
     ]
     text = probe(
-        deck_world(folder, optical_depth),
+        deck_world(folder, optical_depth, ground),
         read_directions("views", ["view_zenith_deg,relative_azimuth_deg", *views]),
         sun_elevation=math.radians(sun),
         altitude=0.5 if side == "below" else 3.0,
@@ -71,6 +73,12 @@ def test_radiances_from_below_are_those_of_many_streams(tmp_path, optical_depth,
 @pytest.mark.parametrize("side", ["above", "below"])
 def test_radiances_under_a_low_sun_are_those_of_many_streams(tmp_path, side):
     check(errors(tmp_path, 8.0, 10.0, side), 0.06, 0.08)
+
+
+@pytest.mark.parametrize("optical_depth", [1.0, 4.0, 16.0])
+def test_ground_and_deck_exchange_light_also_without_air(tmp_path, optical_depth):
+    check(errors(tmp_path, optical_depth, 60.0, "above", ground=0.3), 0.03, 0.05)
+    check(errors(tmp_path, optical_depth, 60.0, "below", ground=0.3), 0.05, 0.06)
 
 
 @pytest.mark.slow
