@@ -13,6 +13,7 @@ from skybake.cloud_fields.noise import billows, random_volume
 from skybake.cloud_fields.population import Bubbles, cumulus_bubbles
 from skybake.cloud_fields.scales import displacements, dyadic
 from skybake.cloud_fields.slopes import limit_slopes
+from skybake.cloud_fields.trilinear import between_nodes
 from skybake.jit.kernel import kernel
 from skybake.jit.workers import ALL_CPUS
 
@@ -148,29 +149,16 @@ def _warp(nodes, flow, period, spacing, rise, amplitude, warped, first, last):
         for j in range(rows):
             for i in range(columns):
                 fx, fy, fz = i * spacing * scale, j * spacing * scale, k * rise * scale
-                dx = amplitude * _smooth(flow, fx, fy, fz)
-                dy = amplitude * _smooth(flow, fx + 0.31 * size, fy + 0.43 * size, fz + 0.59 * size)
-                dz = amplitude * _smooth(flow, fx + 0.67 * size, fy + 0.13 * size, fz + 0.23 * size)
+                dx = amplitude * between_nodes(flow, fx, fy, fz)
+                dy = amplitude * between_nodes(
+                    flow, fx + 0.31 * size, fy + 0.43 * size, fz + 0.59 * size
+                )
+                dz = amplitude * between_nodes(
+                    flow, fx + 0.67 * size, fy + 0.13 * size, fz + 0.23 * size
+                )
                 x, y = i + dx / spacing, j + dy / spacing
                 z = min(max(k + 0.6 * dz / rise, 0.0), levels - 1.001)
                 warped[k, j, i] = _lookup(nodes, x, y, z)
-
-
-@kernel
-def _smooth(volume, x, y, z):
-    """Trilinear value of a volume that is periodic along all axes, at 0 or more."""
-    mask = _WARP_SIZE - 1
-    k, j, i = int(z), int(y), int(x)
-    u, v, w = x - i, y - j, z - k
-    i, j, k = i & mask, j & mask, k & mask
-    east, north, up = (i + 1) & mask, (j + 1) & mask, (k + 1) & mask
-    a = volume[k, j, i] + u * (volume[k, j, east] - volume[k, j, i])
-    b = volume[k, north, i] + u * (volume[k, north, east] - volume[k, north, i])
-    c = volume[up, j, i] + u * (volume[up, j, east] - volume[up, j, i])
-    d = volume[up, north, i] + u * (volume[up, north, east] - volume[up, north, i])
-    a += v * (b - a)
-    c += v * (d - c)
-    return a + w * (c - a)
 
 
 @kernel

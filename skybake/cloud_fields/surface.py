@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from skybake.cloud_fields.noise import BILLOW_SIZE
+from skybake.cloud_fields.trilinear import between_nodes
 from skybake.jit.kernel import kernel
 
 STEP = 2.0**-14
@@ -136,21 +137,9 @@ def _amplitude(field, q, blur):
 def _noise(field, q, x, y, z):
     """Trilinear noise at a point, in [-1, 1]."""
     row = field.displacement[q]
-    volume = field.noise
     fx = row[1] * x + row[2] * y + row[6]
     fy = row[3] * x + row[4] * y + row[7]
     fz = row[5] * z + row[8]
     fx, fy = (fx - math.floor(fx)) * BILLOW_SIZE, (fy - math.floor(fy)) * BILLOW_SIZE
     fz = (fz - math.floor(fz)) * BILLOW_SIZE
-    i, j, k = int(fx), int(fy), int(fz)
-    u, v, w = fx - i, fy - j, fz - k
-    mask = BILLOW_SIZE - 1
-    i, j, k = i & mask, j & mask, k & mask
-    east, north, up = (i + 1) & mask, (j + 1) & mask, (k + 1) & mask
-    a = volume[k, j, i] + u * (volume[k, j, east] - volume[k, j, i])
-    b = volume[k, north, i] + u * (volume[k, north, east] - volume[k, north, i])
-    c = volume[up, j, i] + u * (volume[up, j, east] - volume[up, j, i])
-    d = volume[up, north, i] + u * (volume[up, north, east] - volume[up, north, i])
-    a += v * (b - a)
-    c += v * (d - c)
-    return (a + w * (c - a)) / 127.0
+    return between_nodes(field.noise, fx, fy, fz) / 127.0

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
 
 from skybake.errors import InputError
+from skybake.jit.workers import ALL_CPUS
 
 Array = npt.NDArray[np.float64]
 
@@ -34,6 +36,30 @@ def batch_seed(seed: int, row: int) -> np.uint64:
     return np.uint64(np.random.SeedSequence([seed, row]).generate_state(1, np.uint64)[0])
 
 
-def mean_and_error(means: Array) -> tuple[Array, Array]:
-    """Mean over the last axis, which holds batches, and its standard error."""
+def estimate_means(
+    views: int, wavelengths: int, seed: int, mean: Callable[[int, int, np.uint64], float]
+) -> tuple[Array, Array]:
+    """Estimate radiances from batches of samples, in parallel.
+
+    Parameters
+    ----------
+    views, wavelengths : int
+        How many there are.
+    seed : int
+        Same seed, same result, for any number of threads.
+    mean : callable
+        Mean of one batch for the view and the wavelength of these numbers, with this seed.
+
+    Returns
+    -------
+    mean, stderr : ndarray of float64, shape (view, wavelength)
+    """
+    means = np.empty((views, wavelengths, BATCHES))
+
+    def trace_batches(begin: int, end: int) -> None:
+        for row in range(begin, end):
+            index = np.unravel_index(row, means.shape)
+            means[index] = mean(int(index[0]), int(index[1]), batch_seed(seed, row))
+
+    ALL_CPUS.run_rows(means.size, trace_batches)
     return means.mean(axis=-1), means.std(axis=-1, ddof=1) / math.sqrt(BATCHES)

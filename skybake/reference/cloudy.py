@@ -13,7 +13,7 @@ from skybake.errors import InputError
 from skybake.jit.workers import ALL_CPUS
 from skybake.optics.medium import Medium
 from skybake.reference.air import air_at
-from skybake.reference.batches import BATCHES, batch_seed, mean_and_error, samples_per_batch
+from skybake.reference.batches import estimate_means, samples_per_batch
 from skybake.reference.cloudy_paths import CloudyScene, mean_cloudy_radiance
 from skybake.reference.directions import Direction
 from skybake.reference.guide import make_guide
@@ -83,18 +83,12 @@ def radiance(
     sun, views = _directions(altitude, sun_elevation, sun_bearing, zenith, bearing)
     scenes = _scenes(medium, fields, phases)
     per_batch = samples_per_batch(samples)
-    shape = (len(views), len(scenes), BATCHES)
-    means = np.empty(shape)
 
-    def trace_batches(begin: int, end: int) -> None:
-        for row in range(begin, end):
-            index = np.unravel_index(row, shape)
-            means[index] = mean_cloudy_radiance(
-                scenes[index[1]], sun, altitude, views[index[0]], per_batch, batch_seed(seed, row)
-            )
+    def mean(view: int, wavelength: int, batch: np.uint64) -> float:
+        scene = scenes[wavelength]
+        return mean_cloudy_radiance(scene, sun, altitude, views[view], per_batch, batch)
 
-    ALL_CPUS.run_rows(means.size, trace_batches)
-    return mean_and_error(means)
+    return estimate_means(len(views), len(scenes), seed, mean)
 
 
 def _scenes(

@@ -13,7 +13,7 @@ from skybake.jit.workers import ALL_CPUS
 from skybake.optics.medium import Medium
 from skybake.optics.phase import eval_phase
 from skybake.reference.air import Air, air_at
-from skybake.reference.batches import BATCHES, batch_seed, mean_and_error, samples_per_batch
+from skybake.reference.batches import estimate_means, samples_per_batch
 from skybake.reference.directions import Direction
 from skybake.reference.guide import Guide, make_guide
 from skybake.reference.paths import mean_irradiance, mean_radiance
@@ -112,27 +112,13 @@ def radiance(
     sun, views = _directions(altitude, sun_elevation, view_zenith, relative_azimuth)
     models = _models(medium)
     per_batch = samples_per_batch(samples)
-    shape = (len(views), len(models), BATCHES)
-    means = np.empty(shape)
 
-    def trace_batches(begin: int, end: int) -> None:
-        for row in range(begin, end):
-            index = np.unravel_index(row, shape)
-            air, guide = models[index[1]]
-            means[index] = mean_radiance(
-                air,
-                guide,
-                sun,
-                altitude,
-                views[index[0]],
-                first,
-                last,
-                per_batch,
-                batch_seed(seed, row),
-            )
+    def mean_of(view: int, wavelength: int, batch: np.uint64) -> float:
+        air, guide = models[wavelength]
+        rays = sun, altitude, views[view]
+        return mean_radiance(air, guide, *rays, first, last, per_batch, batch)
 
-    ALL_CPUS.run_rows(means.size, trace_batches)
-    mean, stderr = mean_and_error(means)
+    mean, stderr = estimate_means(len(views), len(models), seed, mean_of)
     if orders is None:
         mean += single_scattering(medium, altitude, sun_elevation, view_zenith, relative_azimuth)
     return mean, stderr
@@ -173,20 +159,12 @@ def irradiance(
     sun, _ = _directions(altitude, sun_elevation, 0.0, 0.0)
     models = _models(medium)
     per_batch = samples_per_batch(samples)
-    shape = (2, len(models), BATCHES)
-    means = np.empty(shape)
 
-    def trace_batches(begin: int, end: int) -> None:
-        for row in range(begin, end):
-            index = np.unravel_index(row, shape)
-            air, guide = models[index[1]]
-            facing = 1.0 - 2.0 * index[0]
-            means[index] = mean_irradiance(
-                air, guide, sun, altitude, facing, per_batch, batch_seed(seed, row)
-            )
+    def mean_of(side: int, wavelength: int, batch: np.uint64) -> float:
+        air, guide = models[wavelength]
+        return mean_irradiance(air, guide, sun, altitude, 1.0 - 2.0 * side, per_batch, batch)
 
-    ALL_CPUS.run_rows(means.size, trace_batches)
-    mean, stderr = mean_and_error(means)
+    mean, stderr = estimate_means(2, len(models), seed, mean_of)
     transmittance = np.array([transmittance_to_space(air, altitude, sun[2]) for air, _ in models])
     direct = transmittance * max(0.0, sun[2])
     return Irradiance(transmittance, direct, mean[0], stderr[0], mean[1], stderr[1])
