@@ -20,7 +20,7 @@ LARGEST_SUN = math.radians(20.0)
 
 STRONGEST_SUN = 1e6
 CLOUD_QUALITIES = ("draft", "normal", "high")
-PIXELS = ("auto", "half", "float")
+PIXELS = ("auto", "half", "float", "rgb9e5", "r11g11b10")
 
 _CLOUDS = {"cloud_time": "time", "clouds_quality": "quality"}
 
@@ -137,14 +137,17 @@ class Encoding:
         What 1.0 stands for: 1.2 * 2**15 cd/m2, or 1 cd/m2.
     ev : float or None
         If given, 1.0 stands for 1.2 * 2**ev cd/m2 instead.
-    pixel : {"auto", "half", "float"}
-        Type of stored values; auto takes half where no value is lost in it.
+    pixel : {"auto", "half", "float", "rgb9e5", "r11g11b10"}
+        Type of stored values; auto takes half where no value is lost in it. The last two, of 32
+        bits for three colours, are of KTX alone.
     compression : str
         EXR compression, see `skybake.formats.compression`.
     clamp_negative : bool
         Set negative values of colours outside the space to 0.
     omit_exposure : bool
         Leave EXPOSURE, by which some programs divide, out of a Radiance picture.
+    mips : bool
+        Write smaller copies with the map, down to one pixel, for programs that filter textures.
     """
 
     colorspace: str = "lin_rec709"
@@ -154,6 +157,7 @@ class Encoding:
     compression: str = "zip"
     clamp_negative: bool = False
     omit_exposure: bool = False
+    mips: bool = False
 
     def __post_init__(self) -> None:
         """Refuse what cannot be stored."""
@@ -221,6 +225,7 @@ class MapSettings:
             "clamp_negative": encoding.clamp_negative,
             "omit_exposure": encoding.omit_exposure,
             "method": lighting.method,
+            **({"mips": True} if encoding.mips else {}),
             **(self.clouds.recipe() if has_clouds else {}),
         }
 
