@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from skybake.baking.losses import HalfLoss, scene_warnings
 from skybake.baking.paths import default_path, map_paths
@@ -14,7 +15,6 @@ from skybake.baking.pixel_type import PixelType, fitting_pixel, value_range
 from skybake.errors import InputError
 from skybake.formats.cube_file import check_cube_encoding, is_cube_file
 from skybake.formats.preview import check_preview
-from skybake.formats.scanlines import Rows
 from skybake.formats.spec import Attribute, MapSpec
 from skybake.formats.whole_files import WholeFiles
 from skybake.formats.writer import check_map_path
@@ -157,6 +157,10 @@ def check_encoding(path: Path, settings: MapSettings) -> None:
         check_cube_encoding(path, encoding.pixel, encoding.compression)
     elif encoding.pixel in ("rgb9e5", "r11g11b10"):
         raise InputError(f"{path}: pixel {encoding.pixel} must be in .ktx2")
+    if encoding.layers or settings.lighting.sun_disc == "separate":
+        from skybake.baking.parts import check_parts
+
+        check_parts(path, settings)
     if encoding.mips:
         from skybake.baking.mips import check_mips
 
@@ -225,7 +229,7 @@ def bake_scene(
             look = picture or PictureSettings()
             shown = open_picture(scene, preview, look, files, stack)
         is_radiance = paths[0].suffix.lower() == ".hdr"
-        with open_pictures(rasters, paths, spec, settings, files, scene.workers) as pictures:
+        with open_pictures(scene, rasters, paths, spec, files) as pictures:
             loss = None
             if is_radiance or (encoding.pixel == stored and stored != "float"):
                 loss = HalfLoss("half" if is_radiance else stored)
@@ -264,11 +268,11 @@ def _write(
         for first in range(0, picture.height, BAND_ROWS)
     ]
 
-    def compute(band: tuple[Picture, int, int]) -> Rows:
+    def compute(band: tuple[Picture, int, int]) -> Any:
         picture, first, last = band
         rows = picture.rows(first, last)
         if loss is not None:
-            loss.add(rows)
+            loss.add(rows[0] if isinstance(rows, tuple) else rows)
         return picture.writer.ready(rows, workers)
 
     computed = workers.ahead(compute, bands)

@@ -14,7 +14,7 @@ from skybake.projection import Equirect, Projection, find_projection
 from skybake.sky.sky import METHODS
 from skybake.units import degrees, metres
 
-SUN_DISCS = ("include", "exclude", "only")
+SUN_DISCS = ("include", "exclude", "only", "separate")
 LARGEST_SUN = math.radians(20.0)
 """Largest diameter of a sun's disc that is drawn in another size than its own. [rad]"""
 
@@ -61,8 +61,8 @@ class Lighting:
         Compass bearing of the sun: 0 = north, clockwise. [rad]
     sun_distance : float or None
         Of the sun; None leaves it where the preset has it. [au]
-    sun_disc : {"include", "exclude", "only"}
-        Whether the map holds the sun's disc, or nothing else.
+    sun_disc : {"include", "exclude", "only", "separate"}
+        Whether the map holds the sun's disc, or nothing else, or each in a part of the file.
     sun_size : float or None
         Angular diameter of the disc as it is drawn, with the light of the true one, at most
         `LARGEST_SUN`; None for its own, or for what a soft one needs. [rad]
@@ -148,6 +148,8 @@ class Encoding:
         Leave EXPOSURE, by which some programs divide, out of a Radiance picture.
     mips : bool
         Write smaller copies with the map, down to one pixel, for programs that filter textures.
+    layers : bool
+        Keep sky, clouds and sun in parts of the file that add up to the map.
     """
 
     colorspace: str = "lin_rec709"
@@ -158,6 +160,7 @@ class Encoding:
     clamp_negative: bool = False
     omit_exposure: bool = False
     mips: bool = False
+    layers: bool = False
 
     def __post_init__(self) -> None:
         """Refuse what cannot be stored."""
@@ -226,6 +229,7 @@ class MapSettings:
             "omit_exposure": encoding.omit_exposure,
             "method": lighting.method,
             **({"mips": True} if encoding.mips else {}),
+            **({"layers": True} if encoding.layers else {}),
             **(self.clouds.recipe() if has_clouds else {}),
         }
 

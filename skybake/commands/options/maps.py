@@ -17,7 +17,16 @@ if TYPE_CHECKING:
 _SHAPES = {"cube_layout": "layout", "equirect_rows": "rows", "fov": "fov"}
 _ENCODINGS = (
     *("colorspace", "units", "ev", "pixel", "compression", "clamp_negative"),
-    *("omit_exposure", "mips", "sun_disc", "sun_size", "sun_soft", "sun_strength", "method"),
+    *(
+        "omit_exposure",
+        "mips",
+        "layers",
+        "sun_disc",
+        "sun_size",
+        "sun_soft",
+        "sun_strength",
+        "method",
+    ),
 )
 
 map_options = options_together(
@@ -111,6 +120,11 @@ map_options = options_together(
         help="Write smaller copies with the map, down to one pixel, as programs need that filter "
         "textures; of an equirect .exr or a cubemap whose size is a power of two.",
     ),
+    click.option(
+        "--layers",
+        is_flag=True,
+        help="Keep sky, clouds and sun in parts of an .exr besides what they add up to.",
+    ),
     click.option("--clamp-negative", is_flag=True, help="Set negative values (out of gamut) to 0."),
     click.option(
         "--omit-exposure",
@@ -122,7 +136,8 @@ map_options = options_together(
         type=click.Choice(values.SUN_DISCS),
         default="include",
         show_default=True,
-        help="Whether the map holds the sun's disc, or nothing else.",
+        help="Whether the map holds the sun's disc, or nothing else, or as separate parts of an "
+        ".exr.",
     ),
     click.option(
         "--sun-size",
@@ -182,6 +197,10 @@ def map_needs(options: Mapping[str, Any]) -> Needs:
         "pixel": (not is_radiance, "needs an .exr, .ktx2 or .dds output"),
         "compression": (suffix in {".exr", ".ktx2"}, "needs an .exr or .ktx2 output"),
         "mips": (not is_radiance, "needs an .exr, .ktx2 or .dds output"),
+        "layers": (
+            suffix == ".exr" and not options["mips"] and options["sun_disc"] != "only",
+            "needs an .exr output that holds the sky, without --mips",
+        ),
         "units": (options["ev"] is None, "cannot be combined with --ev"),
     }
 
@@ -199,6 +218,9 @@ def _check_suffix(suffix: str, options: Mapping[str, Any]) -> None:
             raise click.UsageError(
                 f"--compression: of a .ktx2 must be zstd or none, got {options['compression']!r}"
             )
+    if options["sun_disc"] == "separate" and (suffix != ".exr" or options["mips"]):
+        problem = "cannot be combined with --mips" if options["mips"] else "needs an .exr output"
+        raise click.UsageError(f"--sun-disc separate: {problem}")
     if options["pixel"] in {"rgb9e5", "r11g11b10"} and suffix != ".ktx2":
         raise click.UsageError(f"--pixel {options['pixel']}: needs a .ktx2 output")
 
