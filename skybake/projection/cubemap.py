@@ -127,15 +127,15 @@ class Cubemap(Projection):
                 f"cube layout: must be one of {', '.join(LAYOUTS)}, got {self.layout!r}"
             )
         if self.space not in SPACES:
-            raise InputError(f"cube space: must be one of {', '.join(SPACES)}, got {self.space!r}")
+            raise InputError(f"cube-space: must be one of {', '.join(SPACES)}, got {self.space!r}")
         if self.layout == "exr" and self.space != "world":
             raise InputError(
-                f"cube space: must be world for the cube layout exr, got {self.space!r}"
+                f"cube-space: must be world for the cube layout exr, got {self.space!r}"
             )
         names = parse_face_names(self.face_names)
         if self.layout != "faces" and names != FACES:
             raise InputError(
-                f"face names: must belong to the cube layout faces, got {self.layout!r}"
+                f"face-names: must belong to the cube layout faces, got {self.layout!r}"
             )
         check_edge(self.edge)
 
@@ -227,7 +227,7 @@ def parse_face_names(text: str) -> tuple[str, ...]:
     is_fine = len({name.casefold() for name in names}) == len(names) == len(FACES)
     if not is_fine or not all(map(_FACE_NAME.fullmatch, names)):
         raise InputError(
-            f"face names: must be {', '.join(FACE_NAMES)} or six different names with commas "
+            f"face-names: must be {', '.join(FACE_NAMES)} or six different names with commas "
             f"between, got {text!r}"
         )
     return names
