@@ -1,6 +1,6 @@
 """What three.js shows of a map, in a Chromium without a window.
 
-Needs ``chromium`` and, in a folder ``node_modules`` that `SKYBAKE_NODE_MODULES` names,
+Needs ``chromium`` and, in a folder ``node_modules`` that `SKYBAKE_PEER_NODE_MODULES` names,
 ``npm install three``.
 """
 
@@ -14,7 +14,7 @@ import threading
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
-PAGE = Path(__file__).with_name("three_page.html")
+PAGE = Path(__file__).with_name("three_directions.html")
 KINDS = {".html": "text/html", ".js": "text/javascript"}
 SECONDS = 180.0
 
@@ -22,7 +22,7 @@ SECONDS = 180.0
 def node_modules():
     """Folder of npm's packages."""
     default = Path(__file__).parent / "node_modules"
-    return Path(os.environ.get("SKYBAKE_NODE_MODULES", default))
+    return Path(os.environ.get("SKYBAKE_PEER_NODE_MODULES", default))
 
 
 def is_there():
