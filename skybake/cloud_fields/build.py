@@ -15,6 +15,7 @@ from skybake.cloud_fields.deck import ALTOCUMULUS, STRATOCUMULUS, STRATUS, deck
 from skybake.cloud_fields.empty import empty_field
 from skybake.cloud_fields.field import CloudField
 from skybake.cloud_fields.kept import kept_field
+from skybake.cloud_fields.patching import with_patches
 from skybake.cloud_fields.tiles import read_tile, tile_field
 from skybake.preset.clouds_model import CloudLayer, Tile
 
@@ -66,7 +67,10 @@ def _still_field(layer: CloudLayer) -> CloudField:
 
 @functools.lru_cache(_RECENT)
 def _shaped(kind: str, *shape: float) -> CloudField:
-    return kept_field(kind, shape, _SHAPES[kind])
+    def build(*shape: float) -> CloudField:
+        return with_patches(_SHAPES[kind](*shape), int(shape[-1]))
+
+    return kept_field(kind, shape, build)
 
 
 @functools.lru_cache(1)
@@ -84,4 +88,6 @@ def _at_time(field: CloudField, layer: CloudLayer, time_s: float) -> CloudField:
     # Of the phase only the fraction counts, which is exact for whole periods.
     phase = math.fmod(time_s, EVOLUTION) / EVOLUTION
     displacement[:, 8] = np.mod(displacement[:, 8] - cycles * phase, 1.0)
-    return field._replace(origin=np.mod(origin, field.period), displacement=displacement)
+    if field.patch == 0.0:
+        origin = np.mod(origin, field.period)
+    return field._replace(origin=origin, displacement=displacement)

@@ -139,6 +139,10 @@ def _unfitted(surface: Surface) -> CloudField:
         clearance=np.zeros((1, 1, 1), np.float32),
         block=np.ones(3),
         steepness=1.0,
+        patch=0.0,
+        shifts=np.zeros((1, 1, 2)),
+        erosion=0.0,
+        vanishing=0.0,
     )
 
 
