@@ -106,7 +106,15 @@ def erosion_of(field, share, other):
 
     `vanishing` or more where the patch has no clouds. [km]
     """
-    across = (other - share) / _EDGE
+    return erosion_at(field, (other - share) / _EDGE)
+
+
+@kernel
+def erosion_at(field, across):
+    """How far surfaces are moved inward at a place across an edge. [km]
+
+    All is left at -1, and nothing at 1; at 0 two patches have equal shares.
+    """
     if across <= -1.0:
         return 0.0
     if across <= 0.0:
