@@ -36,6 +36,15 @@ def file_recipe(attributes: Mapping[str, Any]) -> dict[str, Any]:
     return recipe if isinstance(recipe, dict) else {}
 
 
+def file_rotation(attributes: Mapping[str, Any]) -> float:
+    """Return the bearing that the -Z of a file's map looks to, 0 if the file does not say. [rad]"""
+    shown = file_recipe(attributes).get("map")
+    turn = shown.get("rotate_deg") if isinstance(shown, dict) else None
+    if isinstance(turn, int | float) and math.isfinite(turn):
+        return math.radians(turn)
+    return 0.0
+
+
 def file_canvas(attributes: Mapping[str, Any], name: str, width: int, height: int) -> Canvas | None:
     """Return where the pixels of a file look, or None if that is not known.
 
