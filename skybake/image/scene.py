@@ -105,6 +105,7 @@ class Scene:
             method=settings.lighting.method,
             workers=workers,
         )
+        self.sky.check_clouds()
         self.sun_zenith = math.pi / 2.0 - settings.lighting.sun_elevation
         # Of maps that are not rotated, the compass bearing.
         self.sun_bearing = settings.lighting.sun_azimuth - settings.view.rotation
