@@ -29,7 +29,7 @@ PROJECTIONS_WITH = {
     "look": ("fisheye", "perspective"),
 }
 EQUIRECT_ROWS = ("centres", "poles")
-CUBE_LAYOUTS = ("faces", "cross", "vertical-cross", "exr")
+CUBE_LAYOUTS = ("faces", "cross", "vertical-cross", "row", "column", "exr")
 COLOUR_SPACES = ("lin_rec709", "acescg", "lin_rec2020", "lin_p3d65", "aces2065-1", "xyz")
 UNITS = ("ev15", "nits")
 PIXELS = ("auto", "half", "float")
