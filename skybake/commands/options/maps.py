@@ -71,7 +71,8 @@ map_options = options_together(
         "--cube-layout",
         type=click.Choice(values.CUBE_LAYOUTS),
         show_default="faces",
-        help="Six files px nx py ny pz nz, one horizontal or vertical cross, or one OpenEXR cube.",
+        help="Six files px nx py ny pz nz, one horizontal or vertical cross, row or column, or one "
+        "OpenEXR cube.",
     ),
     click.option(
         "--cube-space",
