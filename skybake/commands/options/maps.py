@@ -168,7 +168,11 @@ def map_needs(options: Mapping[str, Any]) -> Needs:
         ),
         **dict.fromkeys(
             ("sun_size", "sun_soft", "sun_strength"),
-            (options["sun_disc"] != "exclude", "cannot be combined with --sun-disc exclude"),
+            # Lights beside the map have them too.
+            (
+                options["sun_disc"] != "exclude" or bool(options.get("lights")),
+                "cannot be combined with --sun-disc exclude",
+            ),
         ),
         "omit_exposure": (is_radiance, "needs an .hdr output"),
         "pixel": (not is_radiance, "needs an .exr output"),
