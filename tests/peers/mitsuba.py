@@ -113,7 +113,5 @@ def _camera(mitsuba, axis, half_width):
 
 
 def _perspective(mitsuba):
-    look = mitsuba.ScalarTransform4f().look_at(
-        origin=[0, 2.2, 8], target=[0, 0.8, 0], up=[0, 1, 0]
-    )
+    look = mitsuba.ScalarTransform4f().look_at(origin=[0, 2.2, 8], target=[0, 0.8, 0], up=[0, 1, 0])
     return {"type": "perspective", "fov": 40.0, "fov_axis": "x", "to_world": look}

@@ -87,8 +87,7 @@ class Sky:
         left, top = np.floor(column).astype(int), np.minimum(row.astype(int), height - 2)
         across, down = (column - left)[..., None], (row - top)[..., None]
         corner = [
-            [self.pixels[top + j, (left + i) % width].astype(float) for i in (0, 1)]
-            for j in (0, 1)
+            [self.pixels[top + j, (left + i) % width].astype(float) for i in (0, 1)] for j in (0, 1)
         ]
         upper, lower = (one + across * (other - one) for one, other in corner)
         return upper + down * (lower - upper)

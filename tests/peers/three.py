@@ -60,5 +60,6 @@ def _modules():
         given = subprocess.run(asked, check=True, capture_output=True, text=True).stdout.strip()
     missing = [name for name in _NEEDED if not (Path(given) / name).is_dir()]
     if missing:
-        raise AbsentError(f"no {' and '.join(missing)} in {given}; {MODULES} may name another folder")
+        names = " and ".join(missing)
+        raise AbsentError(f"no {names} in {given}; {MODULES} may name another folder")
     return Path(given).resolve()
