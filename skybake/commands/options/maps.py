@@ -71,7 +71,8 @@ map_options = options_together(
         "--cube-layout",
         type=click.Choice(values.CUBE_LAYOUTS),
         show_default="faces",
-        help="Six files px nx py ny pz nz, one horizontal or vertical cross, or one OpenEXR cube.",
+        help="Six files px nx py ny pz nz, one horizontal or vertical cross, row or column, or one "
+        "OpenEXR cube.",
     ),
     click.option(
         "--cube-space",
@@ -212,8 +213,9 @@ def map_needs(options: Mapping[str, Any]) -> Needs:
         ),
         **dict.fromkeys(
             ("sun_size", "sun_soft", "sun_strength"),
+            # Lights beside the map have them too.
             (
-                disc != "exclude",
+                disc != "exclude" or bool(options.get("lights")),
                 "cannot be combined with --sun-disc exclude"
                 if options["sun_disc"] is not None
                 else f"needs --sun-disc include with --target {options['target']}",

@@ -35,7 +35,7 @@ TARGETS = (
     *("unreal", "unity", "godot", "bevy", "three", "filament"),
 )
 EQUIRECT_ROWS = ("centres", "poles")
-CUBE_LAYOUTS = ("faces", "cross", "vertical-cross", "exr")
+CUBE_LAYOUTS = ("faces", "cross", "vertical-cross", "row", "column", "exr")
 CUBE_SPACES = ("world", "flip-x", "flip-z")
 COLOUR_SPACES = ("lin_rec709", "acescg", "lin_rec2020", "lin_p3d65", "aces2065-1", "xyz")
 UNITS = ("ev15", "nits")
