@@ -50,7 +50,7 @@ def chart(directions: bool, **options: Any) -> None:
     """
     check_memory()
     context = click.get_current_context()
-    check_needs(context, map_needs(options))
+    check_needs(context, map_needs(options), {"layers": (False, "a chart has none")})
     settings = map_settings(
         options, sun_elevation=options["sun_elevation"], sun_azimuth=options["sun_azimuth"]
     )
