@@ -27,13 +27,13 @@ _BAND_ROWS = 128
 
 
 def bake_orientation_chart(
-    output: Path, settings: MapSettings, *, is_lettered: bool = True
+    output: Path | str, settings: MapSettings, *, is_lettered: bool = True
 ) -> tuple[Path, ...]:
     """Write a picture of directions by the projection and the writer of a map.
 
     Parameters
     ----------
-    output : Path
+    output : Path or str
         As of `skybake.baking.bake`.
     settings : MapSettings
         Of the map whose place it takes.
@@ -51,7 +51,7 @@ def bake_orientation_chart(
     SkybakeError
         If a setting or the target cannot be used; no file is left then.
     """
-    encoding = settings.encoding
+    encoding, output = settings.encoding, Path(output)
     canvases = dict(
         zip(map_paths(output, settings), settings.view.projection.canvases(), strict=True)
     )
