@@ -105,7 +105,7 @@ ENGINES = (
         axes=GRAPHICS,
         verified=BY_DOCUMENTATION,
         cube_space="flip-z",
-        units="nits",
+        pixel="half",
         sun_disc="exclude",
         reasons={
             "maps": TargetReason(
@@ -118,15 +118,22 @@ ENGINES = (
                 "crates/bevy_pbr/src/light_probe/environment_map.wgsl",
             ),
             "rows": CENTRES,
-            "scale": NITS,
-            "pixel": AUTO,
+            "scale": TargetReason(
+                "Texels are multiplied by brightness and intensity, in cd/m2: 39322. In cd/m2 "
+                "themselves the light about the sun exceeds half floats.",
+                "https://docs.rs/bevy/latest/bevy/light/struct.Skybox.html",
+            ),
+            "pixel": TargetReason(
+                "Not all graphics hardware filters textures of floats.",
+                "https://www.w3.org/TR/webgpu/#float32-filterable",
+            ),
             "sun": SUN_AS_LIGHT,
         },
     ),
     Target(
         name="three",
         title="three.js: background and environment of a scene",
-        maps={"equirect": EITHER, "cubemap": (".hdr", ".exr", ".ktx2")},
+        maps={"equirect": EITHER, "cubemap": (".hdr", ".exr")},
         axes=GRAPHICS,
         verified="three.js r187: background and reflections have the directions that files encode",
         rotation=WEST,
@@ -135,7 +142,7 @@ ENGINES = (
         reasons={
             "maps": TargetReason(
                 "EXRLoader and HDRLoader with EquirectangularReflectionMapping, or six faces by "
-                "HDRCubeTextureLoader.",
+                "HDRCubeTextureLoader; KTX2Loader reads no cubes that are not compressed.",
                 "https://threejs.org/docs/#EXRLoader, https://threejs.org/docs/#HDRCubeTextureLoader",
             ),
             "turn": TargetReason(
@@ -155,14 +162,14 @@ ENGINES = (
     Target(
         name="filament",
         title="Filament: cmgen, for an IndirectLight and a Skybox",
-        maps={"equirect": EITHER, "cubemap": (".exr", ".hdr", ".ktx2")},
+        maps={"equirect": EITHER},
         axes=GRAPHICS,
         verified="cmgen 1.9.25: its faces have the directions that a map encodes",
         units="nits",
         sun_disc="exclude",
         reasons={
             "maps": TargetReason(
-                "cmgen takes equirect maps and crosses, .exr or .hdr.", "cmgen --help"
+                "cmgen takes equirect maps, .exr or .hdr, and makes KTX of them.", "cmgen --help"
             ),
             "turn": TargetReason(OUR_AXES, "cmgen --extract of a map of directions"),
             "cube": TargetReason(

@@ -16,6 +16,7 @@ from skybake.image.target_model import SUBJECTS
 from skybake.image.target_sun import target_sun_direction
 from skybake.projection.cubemap import FACES
 from tests.baking.maps import pixels
+from tests.formats.cubes import VK, read_ktx2
 from tests.peers.orientation import bake_directions, in_axes, worst_angle
 
 PI = math.pi
@@ -37,7 +38,6 @@ FORMULAS = {
 CUBES = {
     "three": lambda x, y, z: (-x, y, z),
     "unity": lambda x, y, z: (x, y, z),
-    "filament": lambda x, y, z: (x, y, z),
 }
 
 
@@ -92,11 +92,15 @@ def test_a_cubemap_has_directions_where_the_program_samples_it(tmp_path, name):
     assert worst_angle(seen, brightest) < 0.7
 
 
-def test_cubes_of_bevy_hold_the_light_with_z_negated():
-    settings = map_settings(target="bevy")
-    assert settings.view.projection.name == "cubemap"
-    assert settings.view.projection.space == "flip-z"
-    assert settings.view.rotation == 0.0
+def test_a_ktx2_has_directions_where_bevy_samples_it(tmp_path):
+    """It negates z; nothing else is turned."""
+    (file,), brightest = bake_directions(tmp_path, "bevy", "cubemap", 64)
+    assert file.suffix == ".ktx2"
+    header, levels, _, _ = read_ktx2(file)
+    assert header["vk"] == VK["float"]
+    texels = np.frombuffer(levels[0], np.float32).reshape(6, 64, 64, 4)
+    x, y, z = np.array(in_axes("bevy")).T
+    assert worst_angle(sample_cube(texels[..., :3], x, y, -z), brightest) < 0.1
 
 
 @pytest.mark.parametrize("target", TARGETS.values(), ids=lambda target: target.name)
