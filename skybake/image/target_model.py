@@ -102,7 +102,8 @@ class Target:
         return next(iter(self.maps))
 
     def suffix(self, projection: str) -> str:
-        """Return the usual suffix of its maps of a projection."""
+        """Return the usual suffix of its maps of a projection, which `check` takes."""
+        self.check(projection, {})
         return self.maps[projection][0]
 
     def with_defaults(self, projection: str, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -162,6 +163,7 @@ class Target:
 
     def check_suffix(self, projection: str, suffix: str) -> None:
         """Raise an `InputError` if the program does not take a map in files of a suffix."""
+        self.check(projection, {})
         suffixes = self.maps[projection]
         if suffix.lower() not in suffixes:
             raise InputError(

@@ -58,6 +58,7 @@ def direction_of(chart):
         ("--face-names right -o bright_{face}_16.exr", 6),
         ("--face-names rt,lf,up,dn,ft,bk -o {face}.exr", 6),
         ("--cube-layout vertical-cross -o a.exr", 1),
+        ("--cube-layout row -o a.exr", 1),
     ],
 )
 def test_files_say_where_their_pixels_look(tmp_path, monkeypatch, space, options, count):

@@ -9,11 +9,15 @@ import math
 import numpy as np
 import pytest
 
+from skybake.baking import default_path
+from skybake.baking.orientation_chart import bake_orientation_chart
 from skybake.errors import InputError
-from skybake.image.settings import map_settings
+from skybake.image.settings import Encoding, MapSettings, View, map_settings
 from skybake.image.target import TARGETS, find_target
 from skybake.image.target_model import SUBJECTS
 from skybake.image.target_sun import target_sun_direction
+from skybake.preset import load_preset
+from skybake.projection import Fisheye
 from skybake.projection.cubemap import FACES
 from tests.baking.maps import pixels
 from tests.formats.cubes import VK, read_ktx2
@@ -165,3 +169,14 @@ def test_names_of_faces_are_in_one_order():
     settings = map_settings("cubemap", 4, target="three", face_names="posx")
     faces = [canvas.face for canvas in settings.view.projection.canvases()]
     assert [name[0] + name[-1] for name in faces] == list(FACES)
+
+
+def test_a_map_that_was_put_together_by_hand_is_checked_with_its_files(tmp_path):
+    settings = MapSettings(View(projection=Fisheye(16)), encoding=Encoding(target="unreal"))
+    for write in (
+        lambda: default_path(load_preset("earth"), settings),
+        lambda: bake_orientation_chart(tmp_path / "a.hdr", settings),
+    ):
+        with pytest.raises(InputError, match="projection: must be equirect for the target unreal"):
+            write()
+    assert not list(tmp_path.iterdir())
