@@ -13,6 +13,7 @@ from skybake.version import __version__
 
 if TYPE_CHECKING:
     from skybake.baking import Baked, bake
+    from skybake.baking.orientation_chart import bake_orientation_chart
     from skybake.colour.space import ColourSpace
     from skybake.ephemeris.moment import Moment, TimeSpan, sun_at
     from skybake.ephemeris.place import SITES, Place, find_place
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from skybake.image.picture_settings import PictureSettings
     from skybake.image.scene import Scene
     from skybake.image.settings import Clouds, Encoding, Lighting, MapSettings, View, map_settings
+    from skybake.image.target import TARGETS, Target, TargetAxes, TargetReason, find_target
     from skybake.jit.workers import Workers
     from skybake.optics.changes import PresetChanges
     from skybake.pipeline import Pipeline, Sky
@@ -79,6 +81,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "SITES",
+    "TARGETS",
     "Absorber",
     "Aerosol",
     "Angular",
@@ -136,6 +139,9 @@ __all__ = [
     "Star",
     "TabulatedPhase",
     "TabulatedProfile",
+    "Target",
+    "TargetAxes",
+    "TargetReason",
     "TentProfile",
     "Tile",
     "TimeSpan",
@@ -143,9 +149,11 @@ __all__ = [
     "Workers",
     "__version__",
     "bake",
+    "bake_orientation_chart",
     "bake_sequence",
     "default_manifest",
     "find_place",
+    "find_target",
     "load_preset",
     "map_settings",
     "plan_sequence",
@@ -204,23 +212,29 @@ _HOMES = {
     "Ramp": "skybake.sequence.ramp",
     "RayleighPhase": "skybake.preset",
     "Scene": "skybake.image.scene",
-    "SITES": "skybake.ephemeris.place",
     "SequenceResult": "skybake.sequence.run",
+    "SITES": "skybake.ephemeris.place",
     "Sky": "skybake.pipeline",
     "SkybakeError": "skybake.errors",
     "Spectrum": "skybake.preset",
     "Star": "skybake.preset",
     "TabulatedPhase": "skybake.preset",
     "TabulatedProfile": "skybake.preset",
+    "Target": "skybake.image.target",
+    "TargetAxes": "skybake.image.target",
+    "TargetReason": "skybake.image.target",
+    "TARGETS": "skybake.image.target",
     "TentProfile": "skybake.preset",
     "Tile": "skybake.preset",
     "TimeSpan": "skybake.ephemeris.moment",
     "View": "skybake.image.settings",
     "Workers": "skybake.jit.workers",
     "bake": "skybake.baking",
+    "bake_orientation_chart": "skybake.baking.orientation_chart",
     "bake_sequence": "skybake.sequence.bake",
     "default_manifest": "skybake.sequence.products",
     "find_place": "skybake.ephemeris.place",
+    "find_target": "skybake.image.target",
     "load_preset": "skybake.preset",
     "map_settings": "skybake.image.settings",
     "plan_sequence": "skybake.sequence.planning",
