@@ -45,8 +45,8 @@ class MapSpec:
         Size of the whole file. [pixel]
     colour_space : Tagged
         Space of the pixels.
-    white_luminance : float
-        Luminance of RGB (1, 1, 1). [cd m⁻²]
+    white_luminance : float or None
+        Luminance of RGB (1, 1, 1); None of a file that does not state it. [cd m⁻²]
     pixel : {"half", "float"}
         Stored type; Radiance files hold RGBE regardless.
     compression : str
@@ -66,7 +66,7 @@ class MapSpec:
     width: int
     height: int
     colour_space: Tagged
-    white_luminance: float
+    white_luminance: float | None
     pixel: Literal["half", "float"] = "half"
     compression: str = "zip"
     envmap: Literal["latlong", "cube"] | None = None
@@ -82,7 +82,7 @@ class MapSpec:
             )
         if self.pixel not in {"half", "float"}:
             raise InputError(f"pixel: must be one of half, float, got {self.pixel!r}")
-        if not 0.0 < self.white_luminance < float("inf"):
+        if self.white_luminance is not None and not 0.0 < self.white_luminance < float("inf"):
             raise InputError(
                 f"white_luminance: must be positive, got {self.white_luminance:g} cd/m2"
             )
