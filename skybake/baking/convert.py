@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from skybake.baking.converted_tags import converted_attributes
+from skybake.baking.held_pictures import write_whole
 from skybake.baking.losses import HalfLoss
-from skybake.baking.paths import face_path
+from skybake.baking.mips import check_mips
+from skybake.baking.paths import projection_paths
 from skybake.baking.pixel_type import fitting_pixel
 from skybake.colour.space import ColourSpace, find_colour_space, luminance_weights, rgb_from_xyz
-from skybake.environment.environment import Environment, Pixels
+from skybake.environment.environment import Environment
 from skybake.environment.load import load_environment
 from skybake.environment.resample import resample
 from skybake.errors import InputError
 from skybake.formats.compression import parse_compression
+from skybake.formats.cube_file import check_cube_encoding, is_cube_file
 from skybake.formats.spec import MapSpec
-from skybake.formats.writer import MapWriter, check_map_path, open_maps
+from skybake.formats.whole_files import WholeFiles
+from skybake.formats.writer import check_map_path, open_maps
 from skybake.image.settings import PIXELS
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.projection.chart import Projection
@@ -76,6 +79,7 @@ def convert(
     compression: str = "zip",
     clamp_negative: bool = False,
     omit_exposure: bool = False,
+    mips: bool = False,
     workers: Workers = ALL_CPUS,
 ) -> Converted:
     """Write a map anew; what is not given stays as it is.
@@ -85,7 +89,8 @@ def convert(
     source : Environment, Path or str
         A map that is read, see `skybake.environment.load.load_environment`, or its file.
     output : Path or str
-        ``.exr`` or ``.hdr``; six faces replace ``{face}`` in it, or add ``_px`` and so on.
+        ``.exr`` or ``.hdr``, of a cubemap also ``.ktx2`` or ``.dds``, which hold all faces; six
+        files replace ``{face}`` in it, or add ``_px`` and so on.
     projection : Projection, optional
         Where the new pixels look.
     rotation : float, optional
@@ -95,7 +100,7 @@ def convert(
         A name of `skybake.colour.space.COLOUR_SPACES`. Pixels without a tag are in Rec. 709.
     white_luminance : float, optional
         Luminance that RGB (1, 1, 1) stands for in the new map. [cd m⁻²]
-    pixel, compression, clamp_negative, omit_exposure : optional
+    pixel, compression, clamp_negative, omit_exposure, mips : optional
         As of `skybake.image.settings.Encoding`.
     workers : Workers, optional
         Threads that do the work.
@@ -111,14 +116,22 @@ def convert(
     _ = parse_compression(compression)
     if pixel not in PIXELS:
         raise InputError(f"pixel: must be one of {', '.join(PIXELS)}, got {pixel!r}")
+    if is_cube_file(output):
+        check_cube_encoding(output, pixel, compression)
+    elif pixel in ("rgb9e5", "r11g11b10"):
+        raise InputError(f"{output}: pixel {pixel} must be in .ktx2")
     wanted_space = None if colorspace is None else find_colour_space(colorspace)
     before = source if isinstance(source, Environment) else load_environment(source)
+    paths = projection_paths(output, projection or before.projection)
+    for path in paths:
+        check_map_path(path)
+    if mips:
+        check_mips(output, projection or before.projection)
     after = _laid_out(before, projection, rotation, workers)
     space = wanted_space or before.space or find_colour_space(UNTAGGED)
     after = _encoded(after, space, white_luminance, clamp_negative=clamp_negative)
     stored = fitting_pixel(pixel, *_range(after, space))
     is_radiance = output.suffix.lower() == ".hdr"
-    paths = _paths(output, after.projection)
     encoding = {
         "colorspace": space.name,
         "white_luminance_cd_m2": after.white_luminance,
@@ -126,8 +139,8 @@ def convert(
         "compression": compression,
     }
     attributes = converted_attributes(before, after, encoding)
-    specs = {
-        path: MapSpec(
+    specs = [
+        MapSpec(
             canvas.width,
             canvas.height,
             space,
@@ -138,12 +151,16 @@ def convert(
             states_exposure=not omit_exposure,
             attributes=attributes,
         )
-        for path, canvas in zip(paths, after.projection.canvases(), strict=True)
-    }
-    loss = HalfLoss() if is_radiance or pixel == "half" else None
-    with open_maps(specs) as writers:
-        _write(after.pixels, list(writers.values()), workers, loss)
+        for canvas in after.projection.canvases()
+    ]
+    lossy = "half" if is_radiance else pixel
+    loss = None if lossy in {"auto", "float"} else HalfLoss(lossy)
+    with WholeFiles() as files:
+        if loss is not None:
+            for picture in after.pixels:
+                loss.add(picture)
         lost = None if loss is None else loss.warning(paths[0])
+        clamped = _write(after, paths, specs, files, workers, mips=mips)
     return Converted(
         files=paths,
         projection=after.projection,
@@ -151,7 +168,7 @@ def convert(
         colorspace=space.name,
         white_luminance=after.white_luminance,
         pixel="rgbe" if is_radiance else stored,
-        clamped=sum(writer.clamped for writer in writers.values()),
+        clamped=clamped,
         warnings=before.warnings if lost is None else (*before.warnings, lost),
     )
 
@@ -214,27 +231,22 @@ def _range(environment: Environment, space: ColourSpace) -> tuple[float, float]:
     return largest, least
 
 
-def _paths(output: Path, projection: Projection) -> tuple[Path, ...]:
-    projection.check_file(output)
-    return tuple(
-        output if canvas.face is None else face_path(output, canvas.face)
-        for canvas in projection.canvases()
-    )
-
-
 def _write(
-    pictures: tuple[Pixels, ...],
-    writers: list[MapWriter],
+    environment: Environment,
+    paths: tuple[Path, ...],
+    specs: list[MapSpec],
+    files: WholeFiles,
     workers: Workers,
-    loss: HalfLoss | None,
-) -> None:
-    for picture, writer in zip(pictures, writers, strict=True):
-        for first, rows in _bands(picture):
-            if loss is not None:
-                loss.add(rows)
-            writer.write_ready(first, first + len(rows), writer.ready(rows, workers))
-
-
-def _bands(picture: Pixels) -> Iterator[tuple[int, Pixels]]:
-    for first in range(0, len(picture), BAND_ROWS):
-        yield first, picture[first : first + BAND_ROWS]
+    *,
+    mips: bool,
+) -> int:
+    """Write the files, and return how many negative values became 0."""
+    pictures, projection = environment.pixels, environment.projection
+    if mips or is_cube_file(paths[0]):
+        return write_whole(pictures, projection, paths, specs, files, workers, mips=mips)
+    with open_maps(dict(zip(paths, specs, strict=True)), files) as writers:
+        for picture, writer in zip(pictures, writers.values(), strict=True):
+            for first in range(0, len(picture), BAND_ROWS):
+                rows = picture[first : first + BAND_ROWS]
+                writer.write_ready(first, first + len(rows), writer.ready(rows, workers))
+    return sum(writer.clamped for writer in writers.values())

@@ -18,7 +18,7 @@ from skybake.image.picture_settings import PictureSettings
 from skybake.image.picture_texts import shot_text, white_balance_text
 from skybake.projection import Perspective
 from skybake.projection.lookup import Lookup
-from skybake.projection.of_file import file_canvas
+from skybake.projection.of_file import file_canvas, file_rotation
 
 MAX_WIDTH = 1024
 """Largest width of pictures; larger maps are reduced. [pixel]"""
@@ -119,7 +119,7 @@ def _lookup(source: Path, image: ImageFile, shot: Perspective | None) -> Lookup 
             f"{source}: shot: must be of a map whose layout is known, "
             f"got a picture of {image.width}x{image.height}"
         )
-    lookup = Lookup(canvas, shot)
+    lookup = Lookup(canvas, shot.on_map(file_rotation(image.attributes)))
     if not lookup.shows_something:
         raise InputError(
             f"{source}: shot: must look where the map shows something, got {shot_text(shot)}"

@@ -22,7 +22,14 @@ if TYPE_CHECKING:
     from skybake.environment.environment import Environment
     from skybake.projection import Projection
 
-_SHAPES = {"cube_layout": "layout", "equirect_rows": "rows", "fov": "fov"}
+_SHAPES = {
+    "cube_layout": "layout",
+    "cube_space": "space",
+    "face_names": "face_names",
+    "equirect_rows": "rows",
+    "fov": "fov",
+}
+_INPUT_SHAPES = {"input_cube_space": "space", "input_fov": "fov"}
 
 
 @click.command()
@@ -31,7 +38,7 @@ _SHAPES = {"cube_layout": "layout", "equirect_rows": "rows", "fov": "fov"}
     "output",
     metavar="OUT",
     type=click.Path(path_type=Path),
-    callback=values.with_suffix(".exr", ".hdr"),
+    callback=values.with_suffix(".exr", ".hdr", *values.CUBE_SUFFIXES),
 )
 @conversion_options
 @click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object.")
@@ -41,7 +48,8 @@ def convert(source: Path, output: Path, **options: Any) -> None:
 
     IN is an EXR or Radiance picture of any program: an equirect map 2:1, a cube as cross, row,
     column or six files, of which any one is named, or what metadata say. What no option names
-    stays as it is. OUT is .exr or .hdr; {face} in it is replaced for six files.
+    stays as it is. OUT is .exr, .hdr or, of a cubemap, .ktx2 or .dds; {face} in it is replaced for
+    six files.
 
     \b
     Examples:
@@ -76,6 +84,7 @@ def convert(source: Path, output: Path, **options: Any) -> None:
         compression=options["compression"] or "zip",
         clamp_negative=options["clamp_negative"],
         omit_exposure=options["omit_exposure"],
+        mips=options["mips"],
     )
     for warning in converted.warnings:
         warn(warning)
@@ -89,7 +98,7 @@ def _needs(options: Mapping[str, Any], output: Path) -> dict[str, tuple[bool, st
     is_radiance = output.suffix.lower() == ".hdr"
     needed = {
         f"{before}{name}": (
-            options[f"{before}projection"] in having or not before and not options["projection"],
+            options[f"{before}projection"] in having or (not before and not options["projection"]),
             f"needs --{before.replace('_', '-')}projection {' or '.join(having)}",
         )
         for name, having in values.PROJECTIONS_WITH.items()
@@ -103,8 +112,9 @@ def _needs(options: Mapping[str, Any], output: Path) -> dict[str, tuple[bool, st
             f"cannot be combined with --projection {options['projection']}, which has --look",
         ),
         "omit_exposure": (is_radiance, "needs an .hdr output"),
-        "pixel": (not is_radiance, "needs an .exr output"),
-        "compression": (not is_radiance, "needs an .exr output"),
+        "mips": (not is_radiance, "needs an .exr, .ktx2 or .dds output"),
+        "pixel": (not is_radiance, "needs an .exr, .ktx2 or .dds output"),
+        "compression": (not is_radiance, "needs an .exr, .ktx2 or .dds output"),
         "units": (options["ev"] is None, "cannot be combined with --ev"),
         "input_units": (options["input_ev"] is None, "cannot be combined with --input-ev"),
     }
@@ -116,9 +126,7 @@ def _input_projection(options: Mapping[str, Any]) -> Projection | None:
     name = options["input_projection"]
     if name is None:
         return None
-    given: dict[str, Any] = {}
-    if options["input_fov"] is not None:
-        given["fov"] = options["input_fov"]
+    given = {own: options[one] for one, own in _INPUT_SHAPES.items() if options[one] is not None}
     if options["input_look"] is not None:
         given["azimuth"], given["elevation"] = options["input_look"]
     try:

@@ -128,7 +128,7 @@ def _dome(path: Path, header: SequenceHeader, rows: Sequence[FrameRecord]) -> It
 
 def _sun(header: SequenceHeader, rows: Sequence[FrameRecord]) -> Iterator[str]:
     yield '    def DistantLight "Sun"'
-    if header.sun_disc != "exclude":
+    if header.sun_disc not in {"exclude", "separate"}:
         yield "    ("
         yield "        active = false"
         yield f"        doc = {_quoted(_SUN_IS_IN_MAPS)}"

@@ -45,6 +45,18 @@ conversion_options = options_together(
         "OpenEXR cube.",
     ),
     click.option(
+        "--cube-space",
+        type=click.Choice(values.CUBE_SPACES),
+        show_default="world, or that of IN",
+        help="Axes of a cubemap: the map's own, or with x or z negated.",
+    ),
+    click.option(
+        "--face-names",
+        metavar="STYLE|A,B,C,D,E,F",
+        show_default="px",
+        help="How six files are named, as of 'skybake render'.",
+    ),
+    click.option(
         "--equirect-rows",
         type=click.Choice(values.EQUIRECT_ROWS),
         show_default="centres, or those of IN",
@@ -80,13 +92,21 @@ conversion_options = options_together(
         "--pixel",
         type=click.Choice(values.PIXELS),
         show_default="auto",
-        help="Stored type of an EXR; auto takes half where it holds every value.",
+        help="Stored type; auto takes half where it holds every value. rgb9e5 and r11g11b10 are of "
+        "a .ktx2.",
     ),
     click.option(
         "--compression",
         metavar="NAME[:LEVEL]",
         show_default="zip",
-        help="Of an EXR: none, rle, zips, zip[:1-9], piz, pxr24, b44, b44a, dwaa[:0-135], ...",
+        help="Of an EXR: none, rle, zips, zip[:1-9], piz, pxr24, b44, b44a, dwaa[:0-135], ...; "
+        "of a .ktx2: zstd (default) or none.",
+    ),
+    click.option(
+        "--mips",
+        is_flag=True,
+        help="Write smaller copies with the map, down to one pixel; of an equirect .exr or a "
+        "cubemap whose size is a power of two.",
     ),
     click.option("--clamp-negative", is_flag=True, help="Set negative values (out of gamut) to 0."),
     click.option(
@@ -99,6 +119,12 @@ conversion_options = options_together(
         type=click.Choice(values.PROJECTIONS),
         show_default="what metadata or the shape of IN say",
         help="Kind of map that IN is.",
+    ),
+    click.option(
+        "--input-cube-space",
+        type=click.Choice(values.CUBE_SPACES),
+        show_default="world",
+        help="Axes of IN, a cubemap.",
     ),
     click.option(
         "--input-fov",
