@@ -169,7 +169,7 @@ def convert(
         white_luminance=after.white_luminance,
         pixel="rgbe" if is_radiance else stored,
         clamped=clamped,
-        warnings=before.warnings if lost is None else (*before.warnings, lost),
+        warnings=after.warnings if lost is None else (*after.warnings, lost),
     )
 
 

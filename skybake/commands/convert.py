@@ -97,13 +97,11 @@ def convert(source: Path, output: Path, **options: Any) -> None:
 def _needs(options: Mapping[str, Any], output: Path) -> dict[str, tuple[bool, str]]:
     is_radiance = output.suffix.lower() == ".hdr"
     needed = {
-        f"{before}{name}": (
-            options[f"{before}projection"] in having or (not before and not options["projection"]),
-            f"needs --{before.replace('_', '-')}projection {' or '.join(having)}",
+        f"input_{name}": (
+            options["input_projection"] in having,
+            f"needs --input-projection {' or '.join(having)}",
         )
         for name, having in values.PROJECTIONS_WITH.items()
-        for before in ("", "input_")
-        if f"{before}{name}" in options
     }
     return {
         **needed,
@@ -145,6 +143,11 @@ def _projection(options: Mapping[str, Any], environment: Environment) -> Project
     name = options["projection"] or old.name
     if name in values.PROJECTIONS_WITH["look"] and options["rotate"] is not None:
         raise click.UsageError(f"--rotate: cannot be combined with a {name} map, which has --look")
+    for option, having in values.PROJECTIONS_WITH.items():
+        if options[option] is not None and name not in having:
+            raise click.UsageError(
+                f"--{option.replace('_', '-')}: needs --projection {' or '.join(having)}"
+            )
     try:
         return find_similar(name, options["size"], given, old)
     except InputError as error:
