@@ -53,6 +53,7 @@ def default_path(planet: Planet, settings: MapSettings) -> Path:
         "clamped" if encoding.clamp_negative else "",
         *(_clouds(settings.clouds) if planet.clouds else ()),
         encoding.target or "",
+        view.below_horizon if view.below_horizon != "ground" else "",
         view.projection.label,
     )
     return Path("_".join(filter(None, parts)) + usual_suffix(settings))

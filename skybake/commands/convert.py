@@ -95,7 +95,8 @@ def convert(source: Path, output: Path, **options: Any) -> None:
 
 
 def _needs(options: Mapping[str, Any], output: Path) -> dict[str, tuple[bool, str]]:
-    is_radiance = output.suffix.lower() == ".hdr"
+    suffix = output.suffix.lower()
+    is_radiance = suffix == ".hdr"
     needed = {
         f"input_{name}": (
             options["input_projection"] in having,
@@ -112,7 +113,7 @@ def _needs(options: Mapping[str, Any], output: Path) -> dict[str, tuple[bool, st
         "omit_exposure": (is_radiance, "needs an .hdr output"),
         "mips": (not is_radiance, "needs an .exr, .ktx2 or .dds output"),
         "pixel": (not is_radiance, "needs an .exr, .ktx2 or .dds output"),
-        "compression": (not is_radiance, "needs an .exr, .ktx2 or .dds output"),
+        "compression": (suffix in {".exr", ".ktx2"}, "needs an .exr or .ktx2 output"),
         "units": (options["ev"] is None, "cannot be combined with --ev"),
         "input_units": (options["input_ev"] is None, "cannot be combined with --input-ev"),
     }

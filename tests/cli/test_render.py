@@ -8,7 +8,7 @@ import OpenImageIO
 import pytest
 
 from skybake.baking import bake
-from skybake.formats.reader import read_image
+from skybake.formats.reader import read_attributes, read_image
 from skybake.image.settings import map_settings
 from tests.cli.runs import SMALL, invoke, listing
 
@@ -46,7 +46,8 @@ def test_json_says_what_was_baked(folder):
     assert told["sun_distance_au"] == 1.0
     assert told["sun_angular_diameter_deg"] == pytest.approx(0.5329, abs=1e-4)
     assert told["warnings"] == []
-    assert len(told) == 19
+    assert told["from_below_lux"] is None
+    assert len(told) == 22
 
 
 def test_the_file_carries_what_json_says():
@@ -242,3 +243,17 @@ def test_a_file_is_replaced(folder):
     render(*SMALL, "--sun", "60", "-o", "a.exr")
     assert Path("a.exr").read_bytes() != before
     assert listing(folder) == ["a.exr"]
+
+
+def test_the_light_from_below_is_told_where_the_ground_is_not_shown(folder):
+    result = invoke("render", *SMALL, "--below-horizon", "extend", "-o", "a.exr", "--json", "-q")
+    by_map, by_ground = json.loads(result.stdout)["from_below_lux"]
+    attributes = read_attributes(folder / "a.exr")
+    assert attributes["skybake:illuminanceFromBelow"] == pytest.approx(by_map)
+    assert attributes["skybake:groundIlluminanceFromBelow"] == pytest.approx(by_ground)
+    assert json.loads(attributes["skybake:recipe"])["map"]["below_horizon"] == "extend"
+    shown = invoke("render", *SMALL, "--below-horizon", "black", "-o", "b.exr")
+    assert f" lx, instead of {by_ground:.5g} lx by the ground" in shown.stdout
+    refused = invoke("render", *SMALL, "--below-horizon", "black", "--sun-disc", "only")
+    assert refused.exit_code == 2
+    assert "--below-horizon: cannot be combined with --sun-disc only" in refused.stderr
