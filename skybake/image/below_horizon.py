@@ -20,7 +20,7 @@ RING = 512
 RING_FOOTPRINT = math.radians(0.1)
 
 LEAST = 1e-3
-"""Share of a pixel above the horizon that is neglected; from the ground that is at 90deg and a bit."""
+"""Share of a pixel above the horizon that is neglected; from the ground it is a bit below 90deg."""
 
 _DEPTHS = 96
 _FLATTEST = 1e-9
