@@ -26,6 +26,8 @@ from skybake.image.scene import Scene
 from skybake.image.settings import MapSettings
 from skybake.jit.workers import Workers
 from skybake.preset import Planet, load_preset
+from skybake.sidecar.light_file import check_light_file, write_light_file
+from skybake.sidecar.map_light import MapLight, map_light
 
 BAND_ROWS = 128
 
@@ -60,6 +62,10 @@ class Baked(Light):
         the ground, and by the ground; None of a map that shows it. [lx]
     warnings : tuple of str
         What the files lose of the light, or why it may not be what was meant, a line each.
+    map_light : MapLight or None
+        All about the light that a renderer needs, if it was asked for.
+    light_files : tuple of Path
+        The files that tell it.
     """
 
     files: tuple[Path, ...]
@@ -71,6 +77,8 @@ class Baked(Light):
     clamped: int
     from_below: tuple[float, float] | None = None
     warnings: tuple[str, ...] = ()
+    map_light: MapLight | None = None
+    light_files: tuple[Path, ...] = ()
 
 
 def bake(
@@ -81,6 +89,7 @@ def bake(
     preview: Path | str | None = None,
     picture: PictureSettings | None = None,
     attributes: Mapping[str, Attribute] | None = None,
+    lights: Sequence[Path | str] | None = None,
     progress: Progress | None = None,
     stage: Callable[[str], None] | None = None,
     notice: Callable[[str], None] | None = None,
@@ -104,6 +113,10 @@ def bake(
     attributes : mapping of str to Attribute, optional
         What the files shall state besides their light and their recipe, such as
         ``{"skybake:time": "2026-06-21T04:00:00Z"}``.
+    lights : sequence of Path or str, optional
+        Also write sky and sun as lights of other programs: ``.json``, ``.usda``, or ``.py`` for
+        Blender. The sun shines there only if the map leaves its disc out. Without a name in it
+        only `Baked.map_light` is set.
     progress : callable, optional
         Called with the share of the pixels that is done, from 0 to 1.
     stage : callable, optional
@@ -125,7 +138,8 @@ def bake(
     planet = preset if isinstance(preset, Planet) else load_preset(preset)
     output = Path(output) if output else default_path(planet, settings)
     preview = None if preview is None else Path(preview)
-    check_targets(output, settings, preview)
+    light_files = None if lights is None else [Path(path) for path in lights]
+    check_targets(output, settings, preview, light_files or ())
     scene = Scene(planet, settings)
     if notice is not None and not scene.sky.is_solved:
         notice("solving for the light in this atmosphere, once")
@@ -135,12 +149,18 @@ def bake(
         preview=preview,
         picture=picture,
         attributes=attributes,
+        light_files=light_files,
         progress=progress,
         stage=stage,
     )
 
 
-def check_targets(output: Path, settings: MapSettings, preview: Path | None = None) -> None:
+def check_targets(
+    output: Path,
+    settings: MapSettings,
+    preview: Path | None = None,
+    light_files: Sequence[Path] = (),
+) -> None:
     """Raise the errors of a map's files that can be found before anything is computed.
 
     Raises
@@ -155,6 +175,8 @@ def check_targets(output: Path, settings: MapSettings, preview: Path | None = No
         check_encoding(path, settings)
     if preview is not None:
         check_preview(preview)
+    for path in light_files:
+        check_light_file(path, settings.view.projection.name, map_paths(output, settings))
 
 
 def check_encoding(path: Path, settings: MapSettings) -> None:
@@ -181,6 +203,7 @@ def bake_scene(
     preview: Path | None = None,
     picture: PictureSettings | None = None,
     attributes: Mapping[str, Attribute] | None = None,
+    light_files: Sequence[Path] | None = None,
     progress: Progress | None = None,
     stage: Callable[[str], None] | None = None,
     files: WholeFiles | None = None,
@@ -201,6 +224,7 @@ def bake_scene(
     begin("pixels")
     light = light_of_scene(scene)
     from_below = _from_below(scene)
+    described = None if light_files is None else map_light(scene, light)
     attributes = {
         **attributes_from_light(light),
         **({} if from_below is None else dict(zip(FROM_BELOW, from_below, strict=True))),
@@ -248,6 +272,10 @@ def bake_scene(
                 warnings += [] if lost is None else [lost]
             if shown is not None:
                 shown.draw()
+        if described is not None:
+            time = attributes.get("skybake:time")
+            for path in light_files or ():
+                write_light_file(path, described, paths, files, time=time)
     return Baked(
         **vars(light),
         files=paths,
@@ -259,6 +287,8 @@ def bake_scene(
         clamped=sum(each.writer.clamped for each in pictures),
         from_below=from_below,
         warnings=tuple(warnings),
+        map_light=described,
+        light_files=tuple(light_files or ()),
     )
 
 

@@ -221,8 +221,9 @@ def map_needs(options: Mapping[str, Any]) -> Needs:
         ),
         **dict.fromkeys(
             ("sun_size", "sun_soft", "sun_strength"),
+            # Lights beside the map have them too.
             (
-                disc != "exclude",
+                disc != "exclude" or bool(options.get("lights")),
                 "cannot be combined with --sun-disc exclude"
                 if options["sun_disc"] is not None
                 else f"needs --sun-disc include with --target {options['target']}",
