@@ -14,7 +14,11 @@ from skybake.version import __version__
 if TYPE_CHECKING:
     from skybake.baking import Baked, bake
     from skybake.baking.orientation_chart import bake_orientation_chart
+    from skybake.baking.convert import Converted, convert
     from skybake.colour.space import ColourSpace
+    from skybake.environment.environment import Environment
+    from skybake.environment.load import load_environment
+    from skybake.environment.resample import resample
     from skybake.ephemeris.moment import Moment, TimeSpan, sun_at
     from skybake.ephemeris.place import SITES, Place, find_place
     from skybake.errors import (
@@ -93,10 +97,12 @@ __all__ = [
     "Coefficients",
     "ColourSpace",
     "Constituent",
+    "Converted",
     "CornetteShanksPhase",
     "Cubemap",
     "DoubleHenyeyGreensteinPhase",
     "Encoding",
+    "Environment",
     "Equirect",
     "ExponentialProfile",
     "ExposureCurve",
@@ -151,13 +157,16 @@ __all__ = [
     "bake",
     "bake_orientation_chart",
     "bake_sequence",
+    "convert",
     "default_manifest",
     "find_place",
     "find_target",
+    "load_environment",
     "load_preset",
     "map_settings",
     "plan_sequence",
     "preset_names",
+    "resample",
     "sun_at",
 ]
 
@@ -173,10 +182,12 @@ _HOMES = {
     "Coefficients": "skybake.preset",
     "ColourSpace": "skybake.colour.space",
     "Constituent": "skybake.preset",
+    "Converted": "skybake.baking.convert",
     "CornetteShanksPhase": "skybake.preset",
     "Cubemap": "skybake.projection",
     "DoubleHenyeyGreensteinPhase": "skybake.preset",
     "Encoding": "skybake.image.settings",
+    "Environment": "skybake.environment.environment",
     "Equirect": "skybake.projection",
     "ExponentialProfile": "skybake.preset",
     "ExposureCurve": "skybake.sequence.exposure_curve",
@@ -232,13 +243,16 @@ _HOMES = {
     "bake": "skybake.baking",
     "bake_orientation_chart": "skybake.baking.orientation_chart",
     "bake_sequence": "skybake.sequence.bake",
+    "convert": "skybake.baking.convert",
     "default_manifest": "skybake.sequence.products",
     "find_place": "skybake.ephemeris.place",
     "find_target": "skybake.image.target",
+    "load_environment": "skybake.environment.load",
     "load_preset": "skybake.preset",
     "map_settings": "skybake.image.settings",
     "plan_sequence": "skybake.sequence.planning",
     "preset_names": "skybake.preset",
+    "resample": "skybake.environment.resample",
     "sun_at": "skybake.ephemeris.moment",
 }
 
