@@ -13,8 +13,8 @@ from skybake.version import __version__
 
 if TYPE_CHECKING:
     from skybake.baking import Baked, bake
-    from skybake.baking.orientation_chart import bake_orientation_chart
     from skybake.baking.convert import Converted, convert
+    from skybake.baking.orientation_chart import bake_orientation_chart
     from skybake.colour.space import ColourSpace
     from skybake.environment.environment import Environment
     from skybake.environment.load import load_environment
@@ -82,6 +82,7 @@ if TYPE_CHECKING:
     from skybake.sequence.products import Products, default_manifest
     from skybake.sequence.ramp import Ramp
     from skybake.sequence.run import FrameEvent, SequenceResult
+    from skybake.sidecar.map_light import MapLight
 
 __all__ = [
     "SITES",
@@ -117,6 +118,7 @@ __all__ = [
     "InputError",
     "Light",
     "Lighting",
+    "MapLight",
     "MapSettings",
     "Moment",
     "Octahedral",
@@ -202,6 +204,7 @@ _HOMES = {
     "InputError": "skybake.errors",
     "Light": "skybake.image.light",
     "Lighting": "skybake.image.settings",
+    "MapLight": "skybake.sidecar.map_light",
     "MapSettings": "skybake.image.settings",
     "Moment": "skybake.ephemeris.moment",
     "Octahedral": "skybake.projection",
