@@ -13,8 +13,8 @@ from skybake.version import __version__
 
 if TYPE_CHECKING:
     from skybake.baking import Baked, bake
-    from skybake.baking.orientation_chart import bake_orientation_chart
     from skybake.baking.convert import Converted, convert
+    from skybake.baking.orientation_chart import bake_orientation_chart
     from skybake.colour.space import ColourSpace
     from skybake.environment.environment import Environment
     from skybake.environment.load import load_environment
