@@ -82,6 +82,7 @@ if TYPE_CHECKING:
     from skybake.sequence.products import Products, default_manifest
     from skybake.sequence.ramp import Ramp
     from skybake.sequence.run import FrameEvent, SequenceResult
+    from skybake.sidecar.map_light import MapLight
 
 __all__ = [
     "SITES",
@@ -117,6 +118,7 @@ __all__ = [
     "InputError",
     "Light",
     "Lighting",
+    "MapLight",
     "MapSettings",
     "Moment",
     "Octahedral",
@@ -202,6 +204,7 @@ _HOMES = {
     "InputError": "skybake.errors",
     "Light": "skybake.image.light",
     "Lighting": "skybake.image.settings",
+    "MapLight": "skybake.sidecar.map_light",
     "MapSettings": "skybake.image.settings",
     "Moment": "skybake.ephemeris.moment",
     "Octahedral": "skybake.projection",
