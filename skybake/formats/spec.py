@@ -19,6 +19,13 @@ UNDATED = "1970:01:01 00:00:00"
 same map would have different bytes in every run."""
 
 
+def attribute_text(value: Attribute) -> str:
+    """Return an attribute as formats have it that know only texts."""
+    if isinstance(value, tuple):
+        return " ".join(f"{component:.9g}" for component in value)
+    return f"{value:.9g}" if isinstance(value, float) else str(value)
+
+
 class Tagged(Protocol):
     """A colour space as files name it, see `skybake.colour.space.ColourSpace`."""
 
