@@ -49,9 +49,19 @@ def default_path(planet: Planet, settings: MapSettings) -> Path:
         _scale(encoding),
         "clamped" if encoding.clamp_negative else "",
         *(_clouds(settings.clouds) if planet.clouds else ()),
+        encoding.target or "",
         view.projection.label,
     )
-    return Path(f"{'_'.join(filter(None, parts))}.exr")
+    return Path("_".join(filter(None, parts)) + usual_suffix(settings))
+
+
+def usual_suffix(settings: MapSettings) -> str:
+    """Suffix of a map's files, ``.exr`` unless its target takes another."""
+    if settings.encoding.target is None:
+        return ".exr"
+    from skybake.image.target import find_target
+
+    return find_target(settings.encoding.target).suffix(settings.view.projection.name)
 
 
 def world_name(planet: Planet) -> str:
@@ -100,9 +110,13 @@ def map_paths(target: Path, settings: MapSettings) -> tuple[Path, ...]:
     Raises
     ------
     InputError
-        If the file format cannot hold the projection's layout.
+        If the file format cannot hold the projection's layout, or the target takes no such files.
     """
     projection = settings.view.projection
+    if settings.encoding.target is not None:
+        from skybake.image.target import find_target
+
+        find_target(settings.encoding.target).check_suffix(projection.name, target.suffix)
     projection.check_file(target)
     return tuple(
         target if canvas.face is None else face_path(target, canvas.face)

@@ -121,4 +121,4 @@ def render(**options: Any) -> None:
     if options["as_json"]:
         render_summary.print_json(baked, planet, settings, seconds, moment)
     elif not quiet:
-        render_summary.print_summary(baked, seconds)
+        render_summary.print_summary(baked, settings, seconds)

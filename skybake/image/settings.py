@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any
 
@@ -145,6 +146,9 @@ class Encoding:
         Set negative values of colours outside the space to 0.
     omit_exposure : bool
         Leave EXPOSURE, by which some programs divide, out of a Radiance picture.
+    target : str or None
+        Program that the map is for, a name of `skybake.image.target.TARGETS`. It is stated in
+        files, and they must be of a format that it takes; `map_settings` sets what it needs.
     """
 
     colorspace: str = "lin_rec709"
@@ -154,11 +158,16 @@ class Encoding:
     compression: str = "zip"
     clamp_negative: bool = False
     omit_exposure: bool = False
+    target: str | None = None
 
     def __post_init__(self) -> None:
         """Refuse what cannot be stored."""
         _check_known("pixel", self.pixel, PIXELS)
         _ = self.space, self.white_luminance, parse_compression(self.compression)
+        if self.target is not None:
+            from skybake.image.target import find_target
+
+            find_target(self.target)
 
     @property
     def space(self) -> ColourSpace:
@@ -221,12 +230,13 @@ class MapSettings:
             "clamp_negative": encoding.clamp_negative,
             "omit_exposure": encoding.omit_exposure,
             "method": lighting.method,
+            **({} if encoding.target is None else {"target": encoding.target}),
             **(self.clouds.recipe() if has_clouds else {}),
         }
 
 
 def map_settings(
-    projection: Projection | str = "equirect",
+    projection: Projection | str | None = None,
     size: tuple[int, ...] | int | None = None,
     **values: Any,
 ) -> MapSettings:
@@ -235,19 +245,24 @@ def map_settings(
     Parameters
     ----------
     projection : Projection or str, optional
-        A projection, or a name of `skybake.projection.PROJECTIONS`.
+        A projection, or a name of `skybake.projection.PROJECTIONS`; by default that of the
+        target, or else ``"equirect"``.
     size : tuple of int, or int, optional
         Of a projection that is given by name: width and height, or edge. [pixel]
     **values
         Attributes of `View`, `Lighting` and `Encoding`, such as ``sun_elevation=0.1``, of the
         named projection, such as ``layout="cross"``, and ``cloud_time`` [s] and
-        ``clouds_quality``, see `Clouds`.
+        ``clouds_quality``, see `Clouds`. With ``target="blender"`` what is not given is as that
+        program needs it, and a rotation turns what it takes for north.
 
     Raises
     ------
     InputError
         If a value is out of its range, or there is no such attribute.
     """
+    if values.get("target") is not None:
+        projection, values = _for_target(values["target"], projection, values)
+    projection = projection or "equirect"
     parts = {}
     for name, kind in (("view", View), ("lighting", Lighting), ("encoding", Encoding)):
         names = {one.name for one in fields(kind)}
@@ -263,6 +278,23 @@ def map_settings(
     return MapSettings(
         view, Lighting(**parts["lighting"]), Encoding(**parts["encoding"]), Clouds(**clouds)
     )
+
+
+def _for_target(
+    name: str, projection: Projection | str | None, values: Mapping[str, Any]
+) -> tuple[Projection | str, dict[str, Any]]:
+    """Return the projection, and values by name, with what a target needs besides."""
+    from skybake.image.target import find_target
+
+    target = find_target(name)
+    projection = projection or target.projection
+    if isinstance(projection, str):
+        return projection, target.with_defaults(projection, values)
+    shape = vars(projection)
+    needed = target.with_defaults(projection.name, {**shape, **values})
+    return projection, {
+        key: value for key, value in needed.items() if key in values or key not in shape
+    }
 
 
 def _check_known(name: str, value: str, known: tuple[str, ...]) -> None:

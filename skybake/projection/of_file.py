@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import fields, replace
 from typing import Any
@@ -11,7 +12,7 @@ from typing import Any
 from skybake.errors import InputError
 from skybake.projection import find_projection
 from skybake.projection.chart import Canvas, Projection, whole
-from skybake.projection.cubemap import FACES, Cubemap, FaceChart
+from skybake.projection.cubemap import FACES, Cubemap, FaceChart, parse_face_names
 from skybake.projection.equirect import Equirect
 
 # Values of OpenEXR's `envmap`, as OpenImageIO has them under `textureformat`.
@@ -57,21 +58,35 @@ def file_canvas(attributes: Mapping[str, Any], name: str, width: int, height: in
 
 def _by_recipe(shown: Mapping[str, Any], name: str, width: int, height: int) -> Canvas | None:
     if shown.get("cube_layout") == "faces":
-        face = next((face for face in FACES if name.endswith(face)), None)
-        is_face = face is not None and width == height
-        return whole(FaceChart(face, width), face) if face is not None and is_face else None
+        return _face(shown, name, width) if width == height else None
     try:
         options: dict[str, Any] = {
             own: math.radians(shown[key]) for key, own in _ANGLES.items() if key in shown
         }
         if shown.get("cube_layout") is not None:
             options["layout"] = shown["cube_layout"]
+        if "cube_space" in shown:
+            options["space"] = shown["cube_space"]
         if "equirect_rows" in shown:
             options["rows"] = shown["equirect_rows"]
         projection = find_projection(shown["projection"], None, options)
     except (InputError, TypeError, ValueError, OverflowError):
         return None
     return _canvas(projection, width, height)
+
+
+def _face(shown: Mapping[str, Any], name: str, edge: int) -> Canvas | None:
+    """Return where one of six files looks, which its name says at its end or between signs."""
+    try:
+        names = parse_face_names(shown.get("face_names", FACES[0]))
+        ending = [one for one in names if name.endswith(one)]
+        apart = [one for one in names if re.search(rf"(^|\W|_){re.escape(one)}(\W|_|$)", name)]
+        # Of right and bright the longer one.
+        found = max(ending or apart[:1], key=len)
+        chart = FaceChart(FACES[names.index(found)], edge, shown.get("cube_space", "world"))
+    except (InputError, AttributeError, KeyError, TypeError, ValueError):
+        return None
+    return whole(chart, found)
 
 
 def _by_shape(envmap: Any, width: int, height: int) -> Projection | None:

@@ -25,11 +25,18 @@ PROJECTIONS = ("equirect", "cubemap", "fisheye", "perspective", "angular", "octa
 PROJECTIONS_WITH = {
     "equirect_rows": ("equirect",),
     "cube_layout": ("cubemap",),
+    "cube_space": ("cubemap",),
+    "face_names": ("cubemap",),
     "fov": ("fisheye", "perspective"),
     "look": ("fisheye", "perspective"),
 }
+TARGETS = (
+    *("blender", "usd", "mitsuba", "houdini", "openexr"),
+    *("unreal", "unity", "godot", "bevy", "three", "filament"),
+)
 EQUIRECT_ROWS = ("centres", "poles")
 CUBE_LAYOUTS = ("faces", "cross", "vertical-cross", "exr")
+CUBE_SPACES = ("world", "flip-x", "flip-z")
 COLOUR_SPACES = ("lin_rec709", "acescg", "lin_rec2020", "lin_p3d65", "aces2065-1", "xyz")
 UNITS = ("ev15", "nits")
 PIXELS = ("auto", "half", "float")

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from skybake.preset import Planet
 
 
-def print_summary(baked: Baked, seconds: float) -> None:
+def print_summary(baked: Baked, settings: MapSettings, seconds: float) -> None:
     """Print files and illuminances, human-readable."""
     for path in baked.files:
         click.echo(path)
@@ -32,6 +32,25 @@ def print_summary(baked: Baked, seconds: float) -> None:
     )
     if baked.clamped:
         click.echo(f"{baked.clamped} negative values, out of gamut, were stored as 0")
+    for line in target_lines(settings):
+        click.echo(line)
+
+
+def target_lines(settings: MapSettings) -> list[str]:
+    """Return a line on where things are in the program that a map is for, if it is for one."""
+    name = settings.encoding.target
+    if name is None:
+        return []
+    from skybake.image.target import find_target
+    from skybake.image.target_sun import target_sun_direction
+
+    axes = find_target(name).axes
+    x, y, z = target_sun_direction(settings, name)
+    left_out = ", which needs a light of its own" if settings.lighting.sun_disc == "exclude" else ""
+    return [
+        f"{name}: {axes.east} is east, {axes.north} north, {axes.up} up; "
+        f"toward the sun ({x:.4f}, {y:.4f}, {z:.4f}){left_out}"
+    ]
 
 
 def print_json(
@@ -54,6 +73,7 @@ def result(
         "preset": planet.name,
         "time": None if when is None else when.attributes.get("skybake:time"),
         "sun_direction": list(baked.sun_direction),
+        **_target(settings),
         "sun_distance_au": star.distance / ASTRONOMICAL_UNIT,
         "sun_angular_diameter_deg": math.degrees(lighting.sun_size or 2.0 * star.angular_radius),
         "direct_illuminance_lux": baked.direct_illuminance,
@@ -70,3 +90,12 @@ def result(
         "preview_white": None if baked.preview_white is None else list(baked.preview_white),
         "seconds": round(seconds, 3),
     }
+
+
+def _target(settings: MapSettings) -> dict[str, Any]:
+    name = settings.encoding.target
+    if name is None:
+        return {"target": None, "target_sun_direction": None}
+    from skybake.image.target_sun import target_sun_direction
+
+    return {"target": name, "target_sun_direction": list(target_sun_direction(settings, name))}
