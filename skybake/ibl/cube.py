@@ -11,7 +11,7 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from skybake.projection.cubemap import FACES, face_directions, solid_angles
+from skybake.projection.cubemap import FACES, SPACES, face_directions, solid_angles
 
 Array = npt.NDArray[np.float64]
 Cube = npt.NDArray[np.float32]
@@ -87,6 +87,15 @@ def with_borders(cube: Cube) -> Cube:
             three = padded[:, y, inner_x] + padded[:, inner_y, x] + padded[:, inner_y, inner_x]
             padded[:, y, x] = three / np.float32(3.0)
     return padded
+
+
+def in_space(cube: Cube, space: str) -> Cube:
+    """Return the faces as a cube in another space holds them, see `skybake.projection.cubemap`."""
+    signs = np.array(SPACES[space])
+    if (signs == 1).all():
+        return cube
+    edge = cube.shape[1]
+    return np.ascontiguousarray(cube[places(texel_directions(edge) * signs, edge)])
 
 
 def places(vectors: Array, edge: int) -> tuple[npt.NDArray[np.intp], ...]:

@@ -9,7 +9,6 @@ import numpy as np
 from skybake.jit.kernel import kernel
 
 _ONE, _HALF, _ZERO = np.float32(1.0), np.float32(0.5), np.float32(0.0)
-_PI = np.float32(math.pi)
 
 
 @kernel
@@ -94,8 +93,8 @@ def add_lobes(normals, directions, flux, squared, scale, out):
     ----------
     normals, out : ndarray of float32, shape (n, 3)
         Unit vectors, and what is added to.
-    directions, flux : ndarray of float32, shape (point, 3)
-        Unit vectors, and irradiances on a plane that faces them.
+    directions, flux : ndarray of float32, shape (3, point)
+        Unit vectors, and irradiances on planes that face them.
     squared, scale : ndarray of float32, shape (1,)
         Square of GGX's width, and that square over pi and the lobe's total.
     """
@@ -104,16 +103,16 @@ def add_lobes(normals, directions, flux, squared, scale, out):
     for i in range(normals.shape[0]):
         nx, ny, nz = normals[i, 0], normals[i, 1], normals[i, 2]
         red, green, blue = out[i, 0], out[i, 1], out[i, 2]
-        for j in range(directions.shape[0]):
-            dx, dy, dz = directions[j, 0] - nx, directions[j, 1] - ny, directions[j, 2] - nz
+        for j in range(directions.shape[1]):
+            dx, dy, dz = directions[0, j] - nx, directions[1, j] - ny, directions[2, j] - nz
             # 1 - n.l, without cancellation
             short = _HALF * (dx * dx + dy * dy + dz * dz)
             cosine = max(_ONE - short, _ZERO)
             width = a + b * short
             weight = s * cosine / (width * width)
-            red += weight * flux[j, 0]
-            green += weight * flux[j, 1]
-            blue += weight * flux[j, 2]
+            red += weight * flux[0, j]
+            green += weight * flux[1, j]
+            blue += weight * flux[2, j]
         out[i, 0], out[i, 1], out[i, 2] = red, green, blue
 
 
@@ -148,3 +147,44 @@ def fill_irradiance(normals, moments, signs, out):
                 d += s * max(dx * mx + dy * my + dz * mz, _ZERO)
             out[i, channel], out[i + 1, channel] = a, b
             out[i + 2, channel], out[i + 3, channel] = c, d
+
+
+@kernel
+def fill_dfg(first_row, rings, cosines, out):
+    """Write rows of the split sum's table.
+
+    Parameters
+    ----------
+    first_row : int
+        Number of the first one.
+    rings, cosines : ndarray of float64
+        Quantiles of half vectors' angles from the normal, and cosines of their turns about it.
+    out : ndarray of float32, shape (row, edge, 2)
+        Scale and bias.
+    """
+    edge = out.shape[1]
+    for i in range(out.shape[0]):
+        roughness = (first_row + i + 0.5) / edge
+        a = roughness**4
+        for j in range(edge):
+            view = (j + 0.5) / edge
+            across = math.sqrt(1.0 - view * view)
+            scale, bias = 0.0, 0.0
+            for u in rings:
+                squared = (1.0 - u) / (1.0 + (a - 1.0) * u)
+                height, aside = math.sqrt(squared), math.sqrt(1.0 - squared)
+                for cosine in cosines:
+                    meeting = view * height + across * aside * cosine
+                    light = 2.0 * meeting * height - view
+                    if light <= 0.0 or meeting <= 0.0:
+                        continue
+                    shadowing = light * math.sqrt(view * view * (1.0 - a) + a)
+                    shadowing += view * math.sqrt(light * light * (1.0 - a) + a)
+                    weight = 2.0 * light * meeting / (shadowing * height)
+                    rest = 1.0 - meeting
+                    fresnel = rest * rest
+                    fresnel *= fresnel * rest
+                    scale += (1.0 - fresnel) * weight
+                    bias += fresnel * weight
+            count = rings.size * cosines.size
+            out[i, j, 0], out[i, j, 1] = scale / count, bias / count

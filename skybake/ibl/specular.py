@@ -50,8 +50,8 @@ def specular_cubes(
     edges = np.array([level.shape[1] for level in levels])
     starts = np.cumsum([0, *(len(texels) for texels in bordered[:-1])])
     source = tuple(flatten(each) for each in (np.concatenate(bordered), starts, edges))
-    directions = flatten(np.ascontiguousarray(points.directions, np.float32))
-    flux = flatten(np.ascontiguousarray(points.flux, np.float32))
+    directions = flatten(np.ascontiguousarray(points.directions.T, np.float32))
+    flux = flatten(np.ascontiguousarray(points.flux.T, np.float32))
     cubes = []
     for edge, roughness in sizes:
         alpha = roughness * roughness
