@@ -10,8 +10,11 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
+from skybake.errors import InputError
+from skybake.formats.cube_file import is_cube_file
 from skybake.image.settings import Clouds, Encoding, Lighting, MapSettings
 from skybake.preset import Planet
+from skybake.projection import Cubemap, Projection
 
 PLAIN_LIGHTING, PLAIN_ENCODING, PLAIN_CLOUDS = Lighting(), Encoding(), Clouds()
 
@@ -118,10 +121,23 @@ def map_paths(target: Path, settings: MapSettings) -> tuple[Path, ...]:
 
         find_target(settings.encoding.target).check_suffix(projection.name, target.suffix)
     projection.check_file(target)
+    if is_cube_file(target):
+        _check_cube_file(target, projection)
+        return (target,)
     return tuple(
         target if canvas.face is None else face_path(target, canvas.face)
         for canvas in projection.canvases()
     )
+
+
+def _check_cube_file(target: Path, projection: Projection) -> None:
+    if not isinstance(projection, Cubemap) or projection.layout != "faces":
+        raise InputError(
+            f"{target}: must be of a cubemap in faces, all of which it holds, "
+            f"got {projection.label}"
+        )
+    if "{face}" in target.name:
+        raise InputError(f"{target}: name must have no {{face}}, since the file holds all faces")
 
 
 def face_path(target: Path, face: str) -> Path:

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
 from skybake.baking.losses import HalfLoss, scene_warnings
 from skybake.baking.paths import default_path, map_paths
+from skybake.baking.pictures import Picture, open_pictures
 from skybake.baking.pixel_type import PixelType, fitting_pixel, value_range
+from skybake.errors import InputError
+from skybake.formats.cube_file import check_cube_encoding, is_cube_file
 from skybake.formats.preview import check_preview
 from skybake.formats.scanlines import Rows
 from skybake.formats.spec import Attribute, MapSpec
 from skybake.formats.whole_files import WholeFiles
-from skybake.formats.writer import MapWriter, check_map_path, open_maps
+from skybake.formats.writer import check_map_path
 from skybake.image.light import Light, attributes_from_light, light_of_scene
 from skybake.image.picture_settings import PictureSettings
 from skybake.image.raster import Raster
@@ -82,8 +85,9 @@ def bake(
     preset : Planet, str or Path
         A loaded planet, a preset's name, or the path of a preset's file.
     output : Path or str, optional
-        ``.exr`` or ``.hdr``; default a name that describes it, in the current
-        folder. Six faces replace ``{face}`` in it, or add ``_px`` and so on.
+        ``.exr`` or ``.hdr``, of a cubemap also ``.ktx2`` or ``.dds``, which hold all faces;
+        default a name that describes it, in the current folder. Six files replace ``{face}`` in
+        it, or add ``_px`` and so on.
     settings : MapSettings, optional
         Sun, observer, map, colour and pixels.
     preview : Path or str, optional
@@ -141,8 +145,22 @@ def check_targets(output: Path, settings: MapSettings, preview: Path | None = No
     """
     for path in map_paths(output, settings):
         check_map_path(path)
+        check_encoding(path, settings)
     if preview is not None:
         check_preview(preview)
+
+
+def check_encoding(path: Path, settings: MapSettings) -> None:
+    """Refuse a type, a compression or smaller copies that the format of a file does not have."""
+    encoding = settings.encoding
+    if is_cube_file(path):
+        check_cube_encoding(path, encoding.pixel, encoding.compression)
+    elif encoding.pixel in ("rgb9e5", "r11g11b10"):
+        raise InputError(f"{path}: pixel {encoding.pixel} must be in .ktx2")
+    if encoding.mips:
+        from skybake.baking.mips import check_mips
+
+        check_mips(path, settings.view.projection)
 
 
 def bake_scene(
@@ -178,13 +196,14 @@ def bake_scene(
     }
     encoding = settings.encoding
     canvases = settings.view.projection.canvases()
-    rasters = {path: Raster(scene, one) for path, one in zip(paths, canvases, strict=True)}
-    peak = max(raster.peak for raster in rasters.values())
+    rasters = [Raster(scene, canvas) for canvas in canvases]
+    peak = max(raster.peak for raster in rasters)
     largest, smallest = value_range(scene, peak)
     warnings = scene_warnings(scene, peak)
     stored = fitting_pixel(encoding.pixel, largest, smallest) if pixel is None else pixel
-    specs = {
-        path: MapSpec(
+
+    def spec(raster: Raster) -> MapSpec:
+        return MapSpec(
             raster.canvas.width,
             raster.canvas.height,
             encoding.space,
@@ -195,8 +214,7 @@ def bake_scene(
             states_exposure=not encoding.omit_exposure,
             attributes=attributes,
         )
-        for path, raster in rasters.items()
-    }
+
     with ExitStack() as stack:
         if files is None:
             files = stack.enter_context(WholeFiles())
@@ -206,24 +224,26 @@ def bake_scene(
 
             look = picture or PictureSettings()
             shown = open_picture(scene, preview, look, files, stack)
-        writers = stack.enter_context(open_maps(specs, files))
         is_radiance = paths[0].suffix.lower() == ".hdr"
-        loss = HalfLoss() if is_radiance or encoding.pixel == stored == "half" else None
-        _write(rasters, writers, scene.workers, progress, loss)
-        if loss is not None:
-            lost = loss.warning(paths[0])
-            warnings += [] if lost is None else [lost]
-        if shown is not None:
-            shown.draw()
+        with open_pictures(rasters, paths, spec, settings, files, scene.workers) as pictures:
+            loss = None
+            if is_radiance or (encoding.pixel == stored and stored != "float"):
+                loss = HalfLoss("half" if is_radiance else stored)
+            _write(pictures, scene.workers, progress, loss)
+            if loss is not None:
+                lost = loss.warning(paths[0])
+                warnings += [] if lost is None else [lost]
+            if shown is not None:
+                shown.draw()
     return Baked(
         **vars(light),
         files=paths,
         white_luminance=encoding.white_luminance,
-        pixel=stored if paths[0].suffix.lower() == ".exr" else "rgbe",
+        pixel="rgbe" if is_radiance else stored,
         preview=preview,
         preview_ev=None if shown is None else shown.ev,
         preview_white=None if shown is None else shown.white,
-        clamped=sum(writer.clamped for writer in writers.values()),
+        clamped=sum(each.writer.clamped for each in pictures),
         warnings=tuple(warnings),
     )
 
@@ -233,27 +253,26 @@ def _ignore(_: str) -> None:
 
 
 def _write(
-    rasters: dict[Path, Raster],
-    writers: dict[Path, MapWriter],
+    pictures: Sequence[Picture],
     workers: Workers,
     progress: Progress | None,
     loss: HalfLoss | None,
 ) -> None:
     bands = [
-        (path, first, min(first + BAND_ROWS, raster.canvas.height))
-        for path, raster in rasters.items()
-        for first in range(0, raster.canvas.height, BAND_ROWS)
+        (picture, first, min(first + BAND_ROWS, picture.height))
+        for picture in pictures
+        for first in range(0, picture.height, BAND_ROWS)
     ]
 
-    def compute(band: tuple[Path, int, int]) -> Rows:
-        path, first, last = band
-        rows = rasters[path].rows(first, last)
+    def compute(band: tuple[Picture, int, int]) -> Rows:
+        picture, first, last = band
+        rows = picture.rows(first, last)
         if loss is not None:
             loss.add(rows)
-        return writers[path].ready(rows, workers)
+        return picture.writer.ready(rows, workers)
 
     computed = workers.ahead(compute, bands)
-    for i, ((path, first, last), rows) in enumerate(zip(bands, computed, strict=True)):
-        writers[path].write_ready(first, last, rows)
+    for i, ((picture, first, last), rows) in enumerate(zip(bands, computed, strict=True)):
+        picture.writer.write_ready(first, last, rows)
         if progress is not None:
             progress((i + 1) / len(bands))

@@ -47,9 +47,10 @@ from skybake.commands.printing.progress import map_progress
     *("-o", "--output"),
     metavar="FILE",
     type=click.Path(path_type=Path),
-    callback=values.with_suffix(".exr", ".hdr"),
+    callback=values.with_suffix(*values.MAP_SUFFIXES),
     show_default="a name that says what it is, in the current folder",
-    help="Map to write, .exr or .hdr; {face} in it is replaced for six files.",
+    help="Map to write, .exr or .hdr, or for all faces of a cubemap .ktx2 or .dds; {face} in it is "
+    "replaced for six files.",
 )
 @preview_options
 @click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object.")

@@ -14,6 +14,7 @@ import OpenImageIO
 
 from skybake.errors import InputError
 from skybake.formats.hdr import RADIANCE_EFFICACY, WHITE_LUMINANCE, read_header
+from skybake.formats.ktx2_texts import read_texts
 from skybake.formats.long_texts import joined
 from skybake.formats.targets import is_utf8
 
@@ -118,13 +119,15 @@ def read_image(path: Path) -> tuple[Pixels, dict[str, Any]]:
 
 
 def read_attributes(path: Path) -> dict[str, Any]:
-    """Return the attributes of a map or a preview, as of `ImageFile`.
+    """Return the attributes of a map or a preview, as of `ImageFile`; of a KTX 2 file its texts.
 
     Raises
     ------
     InputError
         If the file is missing, damaged in its header, or of another format than its suffix.
     """
+    if path.suffix.lower() == ".ktx2":
+        return read_texts(path)
     source = _open(path)
     if source.format_name() != _FORMATS.get(path.suffix.lower()):
         raise InputError(f"{path}: format must match the suffix, got {source.format_name()}")

@@ -145,9 +145,7 @@ def bake_lighting_of_file(
     around = surroundings_of_environment(environment, maps.source_edge, rotation, disc, workers)
     space = environment.space or next(iter(COLOUR_SPACES.values()))
     white = environment.white_luminance
-    spec = MapSpec(
-        *(1, 1, space, white or 1.0), attributes={"skybake:source": source.name}
-    )
+    spec = MapSpec(*(1, 1, space, white or 1.0), attributes={"skybake:source": source.name})
     baked = _write(around, output, maps, form, spec, workers, begin)
     return replace(baked, white_luminance=white, warnings=environment.warnings)
 

@@ -93,7 +93,9 @@ def lighting_paths(output: Path, maps: LightingMaps, form: FileForm) -> dict[str
     }
     if form.format == "exr":
         faces = parse_face_names(form.face_names)
-        names["specular"] = tuple(f"m{mip}_{face}.exr" for mip in range(maps.mips) for face in faces)
+        names["specular"] = tuple(
+            f"m{mip}_{face}.exr" for mip in range(maps.mips) for face in faces
+        )
         names["diffuse"] = tuple(f"i_{face}.exr" for face in faces)
     paths = {part: tuple(_named(output, name) for name in names[part]) for part in maps.parts}
     for path in (path for each in paths.values() for path in each):
@@ -144,10 +146,14 @@ def write_lighting(
         if lighting.specular is not None:
             shares = tuple(maps.roughness(mip) for mip in range(maps.mips))
             stated = _stating(spec, "specular", {"skybake:roughness": shares})
-            clamped += _write_cube(paths["specular"], lighting.specular, form, stated, files, workers)
+            clamped += _write_cube(
+                paths["specular"], lighting.specular, form, stated, files, workers
+            )
         if lighting.diffuse is not None:
             stated = _stating(spec, "irradiance / pi", {})
-            clamped += _write_cube(paths["diffuse"], [lighting.diffuse], form, stated, files, workers)
+            clamped += _write_cube(
+                paths["diffuse"], [lighting.diffuse], form, stated, files, workers
+            )
         if lighting.harmonics is not None:
             summary, text = paths["sh"]
             known = {"white_luminance_cd_m2": spec.white_luminance}
@@ -207,8 +213,6 @@ def _write_dfg(
         "skybake:columns": "cosine of the view's angle from the normal",
     }
     edge = len(table)
-    stored = MapSpec(
-        edge, edge, spec.colour_space, 1.0, channels=("R", "G"), attributes=attributes
-    )
+    stored = MapSpec(edge, edge, spec.colour_space, 1.0, channels=("R", "G"), attributes=attributes)
     with open_maps({path: stored}, files) as writers:
         writers[path].write_rows(0, edge, np.ascontiguousarray(table))

@@ -55,8 +55,7 @@ def density(alpha: float, cosine: Array) -> Array:
 
 
 def lobe_total(alpha: float) -> float:
-    """Return the integral of D(h) (n.l) over the directions l of the hemisphere.
-    """
+    """Return the integral of D(h) (n.l) over the directions l of the hemisphere."""
     # dl = 4 cos(t) dh and dh = 2 pi sin(t) dt = pi dx / sqrt(x), so that the integrand is
     # 4 pi D(x) (2 x - 1) dx from 1/2 to 1, with D = a / (pi (1 - b x)²), b = 1 - a, a = alpha².
     a = alpha * alpha

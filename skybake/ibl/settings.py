@@ -71,9 +71,7 @@ class LightingMaps:
         _check_range("samples", self.samples, FEWEST_SAMPLES, MOST_SAMPLES)
         _check_range("dfg size", self.dfg_size, 2, LARGEST_DFG)
         if self.mapping not in MAPPINGS:
-            raise InputError(
-                f"mapping: must be one of {', '.join(MAPPINGS)}, got {self.mapping!r}"
-            )
+            raise InputError(f"mapping: must be one of {', '.join(MAPPINGS)}, got {self.mapping!r}")
 
     @property
     def source_edge(self) -> int:

@@ -21,7 +21,7 @@ LARGEST_SUN = math.radians(20.0)
 
 STRONGEST_SUN = 1e6
 CLOUD_QUALITIES = ("draft", "normal", "high")
-PIXELS = ("auto", "half", "float")
+PIXELS = ("auto", "half", "float", "rgb9e5", "r11g11b10")
 
 _CLOUDS = {"cloud_time": "time", "clouds_quality": "quality"}
 
@@ -138,8 +138,9 @@ class Encoding:
         What 1.0 stands for: 1.2 * 2**15 cd/m2, or 1 cd/m2.
     ev : float or None
         If given, 1.0 stands for 1.2 * 2**ev cd/m2 instead.
-    pixel : {"auto", "half", "float"}
-        Type of stored values; auto takes half where no value is lost in it.
+    pixel : {"auto", "half", "float", "rgb9e5", "r11g11b10"}
+        Type of stored values; auto takes half where no value is lost in it. The last two, of 32
+        bits for three colours, are of KTX alone.
     compression : str
         EXR compression, see `skybake.formats.compression`.
     clamp_negative : bool
@@ -149,6 +150,8 @@ class Encoding:
     target : str or None
         Program that the map is for, a name of `skybake.image.target.TARGETS`. It is stated in
         files, and they must be of a format that it takes; `map_settings` sets what it needs.
+    mips : bool
+        Write smaller copies with the map, down to one pixel, for programs that filter textures.
     """
 
     colorspace: str = "lin_rec709"
@@ -159,6 +162,7 @@ class Encoding:
     clamp_negative: bool = False
     omit_exposure: bool = False
     target: str | None = None
+    mips: bool = False
 
     def __post_init__(self) -> None:
         """Refuse what cannot be stored."""
@@ -231,6 +235,7 @@ class MapSettings:
             "omit_exposure": encoding.omit_exposure,
             "method": lighting.method,
             **({} if encoding.target is None else {"target": encoding.target}),
+            **({"mips": True} if encoding.mips else {}),
             **(self.clouds.recipe() if has_clouds else {}),
         }
 

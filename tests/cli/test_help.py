@@ -114,7 +114,7 @@ def test_defaults_are_those_of_the_engine():
     engine["projection"] = made.view.projection.name
     shared = given.keys() & engine.keys()
     assert {key: given[key] for key in shared} == {key: engine[key] for key in shared}
-    assert len(shared) == 8
+    assert len(shared) == 9
     shown = {p.name: p.show_default for p in render.params if isinstance(p.show_default, str)}
     for key in engine.keys() & shown.keys():
         value = engine[key]

@@ -26,7 +26,8 @@ _SHAPES = {
 }
 _ENCODINGS = (
     *("colorspace", "units", "ev", "pixel", "compression", "clamp_negative"),
-    *("omit_exposure", "sun_disc", "sun_size", "sun_soft", "sun_strength", "method", "target"),
+    *("omit_exposure", "mips", "sun_disc", "sun_size", "sun_soft", "sun_strength", "method"),
+    "target",
 )
 
 map_options = options_together(
@@ -125,13 +126,21 @@ map_options = options_together(
         "--pixel",
         type=click.Choice(values.PIXELS),
         show_default="auto",
-        help="Stored type of an EXR; auto takes half where it holds every value.",
+        help="Stored type; auto takes half where it holds every value. rgb9e5 and r11g11b10 are of "
+        "a .ktx2.",
     ),
     click.option(
         "--compression",
         metavar="NAME[:LEVEL]",
         show_default="zip",
-        help="Of an EXR: none, rle, zips, zip[:1-9], piz, pxr24, b44, b44a, dwaa[:0-135], ...",
+        help="Of an EXR: none, rle, zips, zip[:1-9], piz, pxr24, b44, b44a, dwaa[:0-135], ...; "
+        "of a .ktx2: zstd (default) or none.",
+    ),
+    click.option(
+        "--mips",
+        is_flag=True,
+        help="Write smaller copies with the map, down to one pixel, as programs need that filter "
+        "textures; of an equirect .exr or a cubemap whose size is a power of two.",
     ),
     click.option("--clamp-negative", is_flag=True, help="Set negative values (out of gamut) to 0."),
     click.option(
@@ -185,8 +194,7 @@ def map_needs(options: Mapping[str, Any]) -> Needs:
     """
     projection, suffix, disc = _projection(options), _suffix(options), _sun_disc(options)
     is_radiance = suffix == ".hdr"
-    if is_radiance and options["cube_layout"] == "exr":
-        raise click.UsageError("--cube-layout exr: needs an .exr output")
+    _check_suffix(suffix, options)
     return {
         **{
             name: (projection in having, f"needs --projection {' or '.join(having)}")
@@ -206,8 +214,9 @@ def map_needs(options: Mapping[str, Any]) -> Needs:
             ),
         ),
         "omit_exposure": (is_radiance, "needs an .hdr output"),
-        "pixel": (not is_radiance, "needs an .exr output"),
-        "compression": (not is_radiance, "needs an .exr output"),
+        "pixel": (not is_radiance, "needs an .exr, .ktx2 or .dds output"),
+        "compression": (suffix in {".exr", ".ktx2"}, "needs an .exr or .ktx2 output"),
+        "mips": (not is_radiance, "needs an .exr, .ktx2 or .dds output"),
         "units": (options["ev"] is None, "cannot be combined with --ev"),
     }
 
@@ -253,6 +262,23 @@ def _sun_disc(options: Mapping[str, Any]) -> str:
     target = _target(options)
     disc: str = options["sun_disc"] or ("include" if target is None else target.sun_disc)
     return disc
+
+
+def _check_suffix(suffix: str, options: Mapping[str, Any]) -> None:
+    layout = options["cube_layout"]
+    if layout == "exr" and suffix != ".exr":
+        raise click.UsageError("--cube-layout exr: needs an .exr output")
+    if suffix in values.CUBE_SUFFIXES:
+        if _projection(options) != "cubemap":
+            raise click.UsageError(f"--output: {suffix} needs --projection cubemap")
+        if layout not in {None, "faces"}:
+            raise click.UsageError(f"--cube-layout {layout}: needs an .exr or .hdr output")
+        if options["compression"] not in {None, "zstd", "none"}:
+            raise click.UsageError(
+                f"--compression: of a .ktx2 must be zstd or none, got {options['compression']!r}"
+            )
+    if options["pixel"] in {"rgb9e5", "r11g11b10"} and suffix != ".ktx2":
+        raise click.UsageError(f"--pixel {options['pixel']}: needs a .ktx2 output")
 
 
 def map_settings(options: Mapping[str, Any], **others: Any) -> MapSettings:
