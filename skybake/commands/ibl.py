@@ -116,8 +116,10 @@ def ibl(**options: Any) -> None:
         lighting_needs(options, program),
     )
     maps, form = lighting_from_options(options, program)
-    bake = _of_file if from_file else _of_sky
-    baked = bake(context, program, maps, form)
+    if from_file:
+        baked = _of_file(context, program, maps, form)
+    else:
+        baked = _of_sky(context, program, maps, form)
     for warning in baked.warnings:
         warn(warning)
     seconds = time.perf_counter() - started
@@ -130,7 +132,7 @@ def ibl(**options: Any) -> None:
 def _of_file(
     context: click.Context, program: Program, maps: LightingMaps, form: FileForm
 ) -> BakedLighting:
-    from skybake.ibl.bake import bake_lighting_of_file
+    from skybake.ibl.bake_file import bake_lighting_of_file
 
     options = context.params
     source: Path = options["source"]
@@ -141,7 +143,7 @@ def _of_file(
         options["output"] or Path(source.name.replace("{face}", "")).with_suffix(""),
         maps,
         form,
-        keeps_sun=(options["sun_disc"] or "include") == "include",
+        keeps_sun=(options["sun_disc"] or program.sun_disc) == "include",
         rotation=options["rotate"] or 0.0,
     )
 

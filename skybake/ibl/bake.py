@@ -1,4 +1,4 @@
-"""Bakes a set of lighting maps from a sky, or from a map of any kind."""
+"""Bakes a set of lighting maps of a sky."""
 
 from __future__ import annotations
 
@@ -7,18 +7,15 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from skybake.baking.losses import scene_warnings
-from skybake.colour.space import COLOUR_SPACES
-from skybake.environment.load import load_environment
 from skybake.formats.spec import Attribute, MapSpec
 from skybake.ibl.files import FileForm, lighting_paths, write_lighting
 from skybake.ibl.lighting import light
-from skybake.ibl.map_file import stated_disc, surroundings_of_environment
 from skybake.ibl.settings import LightingMaps
 from skybake.ibl.surroundings import Surroundings, surroundings_of_scene
 from skybake.image.light import attributes_from_light, light_of_scene
 from skybake.image.recipe import recipe_attributes
 from skybake.image.scene import Scene
-from skybake.jit.workers import ALL_CPUS, Workers
+from skybake.jit.workers import Workers
 
 Begin = Callable[[str], None]
 
@@ -48,8 +45,8 @@ class BakedLighting:
     warnings: tuple[str, ...] = ()
 
 
-def _ignore(_: str) -> None:
-    pass
+def ignore(_: str) -> None:
+    """Take no notice of a stage that begins."""
 
 
 def bake_lighting(
@@ -59,7 +56,7 @@ def bake_lighting(
     form: FileForm | None = None,
     *,
     attributes: Mapping[str, Attribute] | None = None,
-    begin: Begin = _ignore,
+    begin: Begin = ignore,
 ) -> BakedLighting:
     """Bake lighting maps of a sky.
 
@@ -102,55 +99,11 @@ def bake_lighting(
         compression=encoding.compression,
         attributes=stated,
     )
-    baked = _write(around, output, maps, form, spec, scene.workers, begin)
+    baked = write_baked(around, output, maps, form, spec, scene.workers, begin)
     return replace(baked, warnings=tuple(scene_warnings(scene, around.peak)))
 
 
-def bake_lighting_of_file(
-    source: Path,
-    output: Path,
-    maps: LightingMaps | None = None,
-    form: FileForm | None = None,
-    *,
-    keeps_sun: bool = True,
-    rotation: float = 0.0,
-    workers: Workers = ALL_CPUS,
-    begin: Begin = _ignore,
-) -> BakedLighting:
-    """Bake lighting maps of a map in a file, of whatever layout.
-
-    Parameters
-    ----------
-    source : Path
-        See `skybake.environment.load.load_environment`.
-    output, maps, form, begin
-        As of `bake_lighting`.
-    keeps_sun : bool, optional
-        Keep what the map holds of a sun. Without it is taken away, where the map states it.
-    rotation : float, optional
-        Compass bearing that -Z looks to. [rad]
-    workers : Workers, optional
-        Threads that do the work.
-
-    Raises
-    ------
-    SkybakeError
-        If the map, a setting or a target cannot be used; no file is left then.
-    """
-    maps, form = maps or LightingMaps(), form or FileForm()
-    lighting_paths(output, maps, form)
-    begin("map")
-    environment = load_environment(source)
-    disc = None if keeps_sun else stated_disc(source, environment)
-    around = surroundings_of_environment(environment, maps.source_edge, rotation, disc, workers)
-    space = environment.space or next(iter(COLOUR_SPACES.values()))
-    white = environment.white_luminance
-    spec = MapSpec(*(1, 1, space, white or 1.0), attributes={"skybake:source": source.name})
-    baked = _write(around, output, maps, form, spec, workers, begin)
-    return replace(baked, white_luminance=white, warnings=environment.warnings)
-
-
-def _write(
+def write_baked(
     around: Surroundings,
     output: Path,
     maps: LightingMaps,
@@ -159,6 +112,19 @@ def _write(
     workers: Workers,
     begin: Begin,
 ) -> BakedLighting:
+    """Make lighting maps of surroundings, and write them.
+
+    Parameters
+    ----------
+    around : Surroundings
+        The light.
+    output, maps, form, spec
+        As of `skybake.ibl.files.write_lighting`.
+    workers : Workers
+        Threads that do the work.
+    begin : callable
+        Called with the stage that begins.
+    """
     lighting = light(around, maps, workers, begin)
     begin("files")
     files, clamped = write_lighting(lighting, output, maps, form, spec, workers)

@@ -132,7 +132,7 @@ def _beyond(edge: int) -> tuple[npt.NDArray[np.intp], ...]:
 
 
 def _axes(face: str) -> tuple[Array, Array]:
-    """Unit vectors to the right of a face and down it."""
+    """Return unit vectors to the right of a face and down it."""
     four = face_directions(face, 2)
     right, down = four[0, 1] - four[0, 0], four[1, 0] - four[0, 0]
     return right / np.linalg.norm(right), down / np.linalg.norm(down)

@@ -10,8 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from skybake.baking.paths import face_path
-from skybake.baking.pixel_type import fitting_pixel
+from skybake.baking.pixel_type import PixelType, fitting_pixel
 from skybake.errors import InputError
 from skybake.formats.cube_file import write_cube
 from skybake.formats.spec import Attribute, MapSpec
@@ -193,9 +192,10 @@ def _write_cube(
     return 0
 
 
-def _pixel(form: FileForm, levels: list[Cube]) -> str:
+def _pixel(form: FileForm, levels: list[Cube]) -> PixelType:
     largest = max(float(np.abs(level).max()) for level in levels)
-    lit = [np.abs(level[level != 0.0]) for level in levels]
+    peaks = [np.abs(level).max(axis=-1) for level in levels]
+    lit = [values[values > 0.0] for values in peaks]
     smallest = min((float(values.min()) for values in lit if values.size), default=1.0)
     return fitting_pixel(form.pixel, largest, smallest)
 

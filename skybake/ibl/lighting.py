@@ -13,7 +13,7 @@ from skybake.ibl.dfg import dfg_table
 from skybake.ibl.diffuse import diffuse_cube
 from skybake.ibl.harmonics import harmonics_of
 from skybake.ibl.settings import LightingMaps
-from skybake.ibl.specular import specular_cubes
+from skybake.ibl.specular import SpecularFilter
 from skybake.ibl.surroundings import Surroundings
 from skybake.jit.workers import ALL_CPUS, Workers
 
@@ -86,5 +86,8 @@ def specular_levels(
 ) -> list[Cube]:
     """Return the specular cube, the map itself and what rougher mirrors show."""
     (edge, _), *rough = maps.levels()
-    filtered = specular_cubes(around.smooth, around.points, rough, maps.samples, workers)
-    return [coarser(around.cube, edge), *filtered]
+    filtered = SpecularFilter(around.smooth, around.points)
+    return [
+        coarser(around.cube, edge),
+        *(filtered.cube(size, roughness, maps.samples, workers) for size, roughness in rough),
+    ]

@@ -17,14 +17,8 @@ CHUNKS = 16
 """Shares of the work on a level."""
 
 
-def specular_cubes(
-    cube: Cube,
-    points: Points,
-    sizes: list[tuple[int, float]],
-    samples: int,
-    workers: Workers = ALL_CPUS,
-) -> list[Cube]:
-    """Return cubes of filtered radiance.
+class SpecularFilter:
+    """Filters light by the lobes of rough mirrors.
 
     Parameters
     ----------
@@ -32,40 +26,48 @@ def specular_cubes(
         The light but for the points; n is a power of 2.
     points : Points
         Light from points, whose lobes are added exactly.
-    sizes : list of (int, float)
-        Edge [pixel] and perceptual roughness of each cube to return: GGX's width is the square of
-        the roughness, which is greater than 0 and at most 1.
-    samples : int
-        Directions in which the lobe of a texel is sampled.
-    workers : Workers, optional
-        Threads that do the work.
-
-    Returns
-    -------
-    list of ndarray of float32, shape (6, edge, edge, 3)
-        A sky of radiance 1 gives 1.
     """
-    levels = pyramid(cube)
-    bordered = [with_borders(level).reshape(-1, 3) for level in levels]
-    edges = np.array([level.shape[1] for level in levels])
-    starts = np.cumsum([0, *(len(texels) for texels in bordered[:-1])])
-    source = tuple(flatten(each) for each in (np.concatenate(bordered), starts, edges))
-    directions = flatten(np.ascontiguousarray(points.directions.T, np.float32))
-    flux = flatten(np.ascontiguousarray(points.flux.T, np.float32))
-    cubes = []
-    for edge, roughness in sizes:
+
+    def __init__(self, cube: Cube, points: Points) -> None:
+        levels = pyramid(cube)
+        self._edge, self._levels = cube.shape[1], len(levels)
+        bordered = [with_borders(level).reshape(-1, 3) for level in levels]
+        edges = np.array([level.shape[1] for level in levels])
+        starts = np.cumsum([0, *(len(texels) for texels in bordered[:-1])])
+        source = np.concatenate(bordered), starts, edges
+        self._source = [flatten(each) for each in source]
+        light = points.directions.T, points.flux.T
+        self._points = [flatten(np.ascontiguousarray(each, np.float32)) for each in light]
+
+    def cube(self, edge: int, roughness: float, samples: int, workers: Workers = ALL_CPUS) -> Cube:
+        """Return what mirrors of a roughness show.
+
+        Parameters
+        ----------
+        edge : int
+            Of the cube. [pixel]
+        roughness : float
+            Perceptual, greater than 0 and at most 1: GGX's width is its square.
+        samples : int
+            Directions in which the lobe of a texel is sampled.
+        workers : Workers, optional
+            Threads that do the work.
+
+        Returns
+        -------
+        ndarray of float32, shape (6, edge, edge, 3)
+            A sky of radiance 1 gives 1.
+        """
         alpha = roughness * roughness
-        taken = lobe_samples(alpha, samples, cube.shape[1], len(levels))
-        lobe = [flatten(each) for each in taken]
+        lobe = [flatten(part) for part in lobe_samples(alpha, samples, self._edge, self._levels)]
         scale = alpha * alpha / (math.pi * lobe_total(alpha))
         width = [flatten(np.array([each], np.float32)) for each in (alpha * alpha, scale)]
         normals = texel_directions(edge).reshape(-1, 3)
         out = np.empty(normals.shape, np.float32)
 
         def work(first: int, last: int) -> None:
-            fill_filtered(normals[first:last], *source, *lobe, out[first:last])
-            add_lobes(normals[first:last], directions, flux, *width, out[first:last])
+            fill_filtered(normals[first:last], *self._source, *lobe, out[first:last])
+            add_lobes(normals[first:last], *self._points, *width, out[first:last])
 
         workers.run_rows(len(normals), work, chunk=-(-len(normals) // CHUNKS))
-        cubes.append(out.reshape(6, edge, edge, 3))
-    return cubes
+        return out.reshape(6, edge, edge, 3)

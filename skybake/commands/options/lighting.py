@@ -51,7 +51,7 @@ lighting_options = options_together(
         "--target",
         metavar="NAME",
         type=click.Choice(values.LIGHTING_TARGETS),
-        help="Program that the maps are for: sets format, pixel type, axes, scale, the roughness of "
+        help="Program that the maps are for: sets format, pixel type, axes, scale, roughness of "
         "mips, and whether the sun is in the maps, where other options do not.",
     ),
     click.option(
