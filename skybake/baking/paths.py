@@ -23,7 +23,7 @@ LONGEST_CHANGES = 40
 """Longest value, and longest of all changes together, that is part of a name. [character]"""
 
 _SAFE = re.compile(r"[A-Za-z0-9_.-]+")
-_DISCS = {"include": "", "exclude": "nodisc", "only": "disc"}
+_DISCS = {"include": "", "exclude": "nodisc", "only": "disc", "separate": "separate"}
 
 
 def default_path(planet: Planet, settings: MapSettings) -> Path:

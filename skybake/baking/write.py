@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from skybake.baking.losses import HalfLoss, scene_warnings
 from skybake.baking.paths import default_path, map_paths
@@ -14,7 +15,6 @@ from skybake.baking.pixel_type import PixelType, fitting_pixel, value_range
 from skybake.errors import InputError
 from skybake.formats.cube_file import check_cube_encoding, is_cube_file
 from skybake.formats.preview import check_preview
-from skybake.formats.scanlines import Rows
 from skybake.formats.spec import Attribute, MapSpec
 from skybake.formats.whole_files import WholeFiles
 from skybake.formats.writer import check_map_path
@@ -26,6 +26,8 @@ from skybake.image.scene import Scene
 from skybake.image.settings import MapSettings
 from skybake.jit.workers import Workers
 from skybake.preset import Planet, load_preset
+from skybake.sidecar.light_file import check_light_file, write_light_file
+from skybake.sidecar.map_light import MapLight, map_light
 
 BAND_ROWS = 128
 
@@ -54,6 +56,10 @@ class Baked(Light):
         Negative values that became 0 in a format without a sign.
     warnings : tuple of str
         What the files lose of the light, or why it may not be what was meant, a line each.
+    map_light : MapLight or None
+        All about the light that a renderer needs, if it was asked for.
+    light_files : tuple of Path
+        The files that tell it.
     """
 
     files: tuple[Path, ...]
@@ -64,6 +70,8 @@ class Baked(Light):
     preview_white: tuple[float, float] | None
     clamped: int
     warnings: tuple[str, ...] = ()
+    map_light: MapLight | None = None
+    light_files: tuple[Path, ...] = ()
 
 
 def bake(
@@ -74,6 +82,7 @@ def bake(
     preview: Path | str | None = None,
     picture: PictureSettings | None = None,
     attributes: Mapping[str, Attribute] | None = None,
+    lights: Sequence[Path | str] | None = None,
     progress: Progress | None = None,
     stage: Callable[[str], None] | None = None,
     notice: Callable[[str], None] | None = None,
@@ -97,6 +106,10 @@ def bake(
     attributes : mapping of str to Attribute, optional
         What the files shall state besides their light and their recipe, such as
         ``{"skybake:time": "2026-06-21T04:00:00Z"}``.
+    lights : sequence of Path or str, optional
+        Also write sky and sun as lights of other programs: ``.json``, ``.usda``, or ``.py`` for
+        Blender. The sun shines there only if the map leaves its disc out. Without a name in it
+        only `Baked.map_light` is set.
     progress : callable, optional
         Called with the share of the pixels that is done, from 0 to 1.
     stage : callable, optional
@@ -118,7 +131,8 @@ def bake(
     planet = preset if isinstance(preset, Planet) else load_preset(preset)
     output = Path(output) if output else default_path(planet, settings)
     preview = None if preview is None else Path(preview)
-    check_targets(output, settings, preview)
+    light_files = None if lights is None else [Path(path) for path in lights]
+    check_targets(output, settings, preview, light_files or ())
     scene = Scene(planet, settings)
     if notice is not None and not scene.sky.is_solved:
         notice("solving for the light in this atmosphere, once")
@@ -128,12 +142,18 @@ def bake(
         preview=preview,
         picture=picture,
         attributes=attributes,
+        light_files=light_files,
         progress=progress,
         stage=stage,
     )
 
 
-def check_targets(output: Path, settings: MapSettings, preview: Path | None = None) -> None:
+def check_targets(
+    output: Path,
+    settings: MapSettings,
+    preview: Path | None = None,
+    light_files: Sequence[Path] = (),
+) -> None:
     """Raise the errors of a map's files that can be found before anything is computed.
 
     Raises
@@ -148,6 +168,8 @@ def check_targets(output: Path, settings: MapSettings, preview: Path | None = No
         check_encoding(path, settings)
     if preview is not None:
         check_preview(preview)
+    for path in light_files:
+        check_light_file(path, settings.view.projection.name, map_paths(output, settings))
 
 
 def check_encoding(path: Path, settings: MapSettings) -> None:
@@ -157,6 +179,10 @@ def check_encoding(path: Path, settings: MapSettings) -> None:
         check_cube_encoding(path, encoding.pixel, encoding.compression)
     elif encoding.pixel in ("rgb9e5", "r11g11b10"):
         raise InputError(f"{path}: pixel {encoding.pixel} must be in .ktx2")
+    if encoding.layers or settings.lighting.sun_disc == "separate":
+        from skybake.baking.parts import check_parts
+
+        check_parts(path, settings)
     if encoding.mips:
         from skybake.baking.mips import check_mips
 
@@ -170,6 +196,7 @@ def bake_scene(
     preview: Path | None = None,
     picture: PictureSettings | None = None,
     attributes: Mapping[str, Attribute] | None = None,
+    light_files: Sequence[Path] | None = None,
     progress: Progress | None = None,
     stage: Callable[[str], None] | None = None,
     files: WholeFiles | None = None,
@@ -189,6 +216,7 @@ def bake_scene(
         scene.light_clouds()
     begin("pixels")
     light = light_of_scene(scene)
+    described = None if light_files is None else map_light(scene, light)
     attributes = {
         **attributes_from_light(light),
         **recipe_attributes(planet, settings),
@@ -225,7 +253,7 @@ def bake_scene(
             look = picture or PictureSettings()
             shown = open_picture(scene, preview, look, files, stack)
         is_radiance = paths[0].suffix.lower() == ".hdr"
-        with open_pictures(rasters, paths, spec, settings, files, scene.workers) as pictures:
+        with open_pictures(scene, rasters, paths, spec, files) as pictures:
             loss = None
             if is_radiance or (encoding.pixel == stored and stored != "float"):
                 loss = HalfLoss("half" if is_radiance else stored)
@@ -235,6 +263,10 @@ def bake_scene(
                 warnings += [] if lost is None else [lost]
             if shown is not None:
                 shown.draw()
+        if described is not None:
+            time = attributes.get("skybake:time")
+            for path in light_files or ():
+                write_light_file(path, described, paths, files, time=time)
     return Baked(
         **vars(light),
         files=paths,
@@ -245,6 +277,8 @@ def bake_scene(
         preview_white=None if shown is None else shown.white,
         clamped=sum(each.writer.clamped for each in pictures),
         warnings=tuple(warnings),
+        map_light=described,
+        light_files=tuple(light_files or ()),
     )
 
 
@@ -264,11 +298,11 @@ def _write(
         for first in range(0, picture.height, BAND_ROWS)
     ]
 
-    def compute(band: tuple[Picture, int, int]) -> Rows:
+    def compute(band: tuple[Picture, int, int]) -> Any:
         picture, first, last = band
         rows = picture.rows(first, last)
         if loss is not None:
-            loss.add(rows)
+            loss.add(rows[0] if isinstance(rows, tuple) else rows)
         return picture.writer.ready(rows, workers)
 
     computed = workers.ahead(compute, bands)

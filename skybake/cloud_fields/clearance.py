@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from skybake.cloud_fields.surface import edge_width, mean_shift, node_distance, reach_of_noise
+from skybake.cloud_fields.surface import edge_width, reach_of_noise, surface_distance
 from skybake.jit.kernel import kernel
 
 
@@ -83,11 +83,7 @@ def surface_clearance(field, x, y, altitude, blur):
     clear = _of_block(field, x, y, altitude)
     if clear > 0.0:
         return clear
-    x -= math.floor(x / field.period[0]) * field.period[0]
-    y -= math.floor(y / field.period[1]) * field.period[1]
-    fz = (altitude - field.base) / field.spacing[0]
-    fz = min(max(fz, 0.0), field.distance.shape[0] - 1.000001)
-    distance = node_distance(field, x, y, fz) - mean_shift(field, blur)
+    distance = surface_distance(field, x, y, altitude, blur)
     reach = 0.5 * edge_width(field, blur) + reach_of_noise(field, blur)
     below = field.condensation - altitude - reach
     return max((distance - reach) / field.steepness, below)

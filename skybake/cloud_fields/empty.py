@@ -29,4 +29,8 @@ def empty_field() -> CloudField:
         clearance=np.ones((1, 1, 1), np.float32),
         block=np.ones(3),
         steepness=1.0,
+        patch=0.0,
+        shifts=np.zeros((1, 1, 2)),
+        erosion=0.0,
+        vanishing=0.0,
     )

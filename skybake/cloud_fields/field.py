@@ -18,7 +18,7 @@ voxels' centres, and a signed distance from the surface of clouds, linear betwee
 
 
 class CloudField(NamedTuple):
-    """A layer of clouds that repeats to all sides.
+    """A layer of clouds on a tile, with which the plane is covered.
 
     Fields of every kind have the same types, so that one compiled kernel serves them all.
 
@@ -64,6 +64,14 @@ class CloudField(NamedTuple):
         Size of a block along z, y and x. [km]
     steepness : float
         By how much faster than the true distance from the surface `distance` may change.
+    patch : float
+        Distance between the middles of neighbouring patches of the plane, each of which holds
+        the tile somewhere else; 0 where it repeats to all sides. [km]
+    shifts : ndarray of float64, shape (row, column, 2)
+        By what the tile is shifted in patches. [km]
+    erosion, vanishing : float
+        How far the surface is moved inward on the edge of two patches, which keeps the mean
+        extinction there; and where nothing is left of clouds. [km]
     """
 
     kind: int
@@ -85,10 +93,14 @@ class CloudField(NamedTuple):
     clearance: npt.NDArray[np.float32]
     block: npt.NDArray[np.float64]
     steepness: float
+    patch: float
+    shifts: npt.NDArray[np.float64]
+    erosion: float
+    vanishing: float
 
 
 @kernel
-def extinction_at(field, x, y, altitude, blur):
+def extinction_at(field, x, y, altitude, blur, erosion=0.0):
     """Extinction at a point of the tile, whose details below `blur` are left out. [km⁻¹]
 
     Parameters
@@ -101,9 +113,11 @@ def extinction_at(field, x, y, altitude, blur):
         Above the ground. [km]
     blur : float
         Size below which nothing needs to be resolved. [km]
+    erosion : float, optional
+        By which a surface is moved inward. [km]
     """
     if field.kind == SURFACE:
-        return surface_extinction(field, x, y, altitude, blur)
+        return surface_extinction(field, x, y, altitude, blur, erosion)
     if field.kind == CONSTANT:
         return voxel_extinction(field, x, y, altitude)
     return linear_extinction(field, x, y, altitude)
@@ -113,7 +127,8 @@ def extinction_at(field, x, y, altitude, blur):
 def clearance_at(field, x, y, altitude, blur):
     """Distance around a point within which there is no cloud, 0 or less if there may be one. [km]
 
-    Distances are those of the tile, flat; parameters are those of `extinction_at`.
+    Distances are those of the tile, flat; parameters are those of `extinction_at`. It holds
+    with any erosion.
     """
     if field.kind == SURFACE:
         return surface_clearance(field, x, y, altitude, blur)

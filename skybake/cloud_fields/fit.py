@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from skybake.cloud_fields.clearance import block_clearance, blocks_of
 from skybake.cloud_fields.field import SURFACE, CloudField
 from skybake.cloud_fields.surface import STEP, surface_extinction
+from skybake.cloud_fields.surface_bounds import with_clearance
 from skybake.jit.kernel import kernel
 from skybake.jit.workers import ALL_CPUS
 
@@ -23,7 +22,6 @@ _BLURS = 7
 # Prime, so that columns meet nodes and noise at every phase.
 _COLUMNS = 139
 _FEW_COLUMNS = 67
-_NODES_PER_BLOCK = (3, 6, 6)
 _TRIALS = 12
 _CLOSE = 5e-4
 
@@ -85,7 +83,7 @@ def fitted_field(
         shift=np.full(_BLURS, offset),
     )
     field = field._replace(shift=_mean_keeping_shifts(field))
-    return _with_clearance(field)
+    return with_clearance(field)
 
 
 def _root(cover_at: Callable[[float], float], cover: float, farthest: float) -> float:
@@ -139,6 +137,10 @@ def _unfitted(surface: Surface) -> CloudField:
         clearance=np.zeros((1, 1, 1), np.float32),
         block=np.ones(3),
         steepness=1.0,
+        patch=0.0,
+        shifts=np.zeros((1, 1, 2)),
+        erosion=0.0,
+        vanishing=0.0,
     )
 
 
@@ -209,53 +211,6 @@ def _mean_keeping_shifts(field: CloudField) -> npt.NDArray[np.float64]:
             high = mean(blur, after) - wanted
         shifts[i] = before + step
     return shifts
-
-
-def _with_clearance(field: CloudField) -> CloudField:
-    """Find the blocks that no displacement and no blur carries the surface into."""
-    blurs = field.largest_blur * np.linspace(0.0, 1.0, 4 * _BLURS - 3) ** 2
-    amplitudes, waves = field.displacement[:, 0], field.displacement[:, 5]
-    noise = np.maximum(amplitudes * (1.0 - 4.0 * blurs[:, None] * waves), 0.0).sum(1)
-    reaches = noise + 0.5 * np.minimum(field.edge + blurs, field.widest_edge)
-    # Between these blurs the reach bends; a step of the noise covers what it may differ by.
-    between = float(np.abs(np.diff(noise)).max(initial=0.0))
-    reach = float(reaches.max()) + between
-    nearest = float(reaches.min()) - between + float(field.shift.min())
-    steepness = _steepness(field.distance, field.spacing, nearest / STEP)
-    cloudy = field.distance < (reach + float(field.shift.max())) / STEP
-    for axis in range(3):
-        turned = np.roll(cloudy, -1, axis)
-        cloudy = cloudy | turned
-    cloudy = cloudy[:-1]
-    bottom = field.condensation - reach
-    heights = field.base + np.arange(1, len(cloudy) + 1) * field.spacing[0]
-    cloudy &= (heights > bottom)[:, None, None]
-    mask, block = blocks_of(cloudy, field.spacing, _NODES_PER_BLOCK)
-    return field._replace(clearance=block_clearance(mask, block), block=block, steepness=steepness)
-
-
-@kernel
-def _steepness(distance, spacing, nearest):
-    """Largest gradient where trilinear values are above `nearest`, at least 1."""
-    levels, rows, columns = distance.shape
-    dz, dy, dx = spacing[0] / STEP, spacing[1] / STEP, spacing[2] / STEP
-    largest = 1.0
-    for k in range(levels - 1):
-        for j in range(rows):
-            north = j + 1 if j + 1 < rows else 0
-            for i in range(columns):
-                east = i + 1 if i + 1 < columns else 0
-                a, b = float(distance[k, j, i]), float(distance[k, j, east])
-                c, d = float(distance[k, north, i]), float(distance[k, north, east])
-                e, f = float(distance[k + 1, j, i]), float(distance[k + 1, j, east])
-                g, h = float(distance[k + 1, north, i]), float(distance[k + 1, north, east])
-                if max(a, b, c, d, e, f, g, h) <= nearest:
-                    continue
-                x = max(abs(b - a), abs(d - c), abs(f - e), abs(h - g)) / dx
-                y = max(abs(c - a), abs(d - b), abs(g - e), abs(h - f)) / dy
-                z = max(abs(e - a), abs(f - b), abs(g - c), abs(h - d)) / dz
-                largest = max(largest, x * x + y * y + z * z)
-    return math.sqrt(largest)
 
 
 @kernel

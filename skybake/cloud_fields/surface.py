@@ -24,20 +24,33 @@ _SWIRL = 0.6
 
 
 @kernel
-def surface_extinction(field, x, y, altitude, blur):
+def surface_extinction(field, x, y, altitude, blur, erosion=0.0):
     """Extinction at a point; parameters are those of `extinction_at`. [km⁻¹]"""
     fz = (altitude - field.base) / field.spacing[0]
     if fz < 0.0 or fz >= field.distance.shape[0] - 1:
         return 0.0
     x -= math.floor(x / field.period[0]) * field.period[0]
     y -= math.floor(y / field.period[1]) * field.period[1]
-    distance = node_distance(field, x, y, fz) - mean_shift(field, blur)
+    distance = node_distance(field, x, y, fz) - mean_shift(field, blur) + erosion
     density = surface_density(field, distance, x, y, altitude, blur)
     if density <= 0.0:
         return 0.0
     k = int(fz)
     low, high = field.extinction[k], field.extinction[k + 1]
     return density * (low + (fz - k) * (high - low))
+
+
+@kernel
+def surface_distance(field, x, y, altitude, blur):
+    """Distance from the surface that is not displaced, of points beyond the layer that of its end.
+
+    Parameters are those of `extinction_at`. [km]
+    """
+    x -= math.floor(x / field.period[0]) * field.period[0]
+    y -= math.floor(y / field.period[1]) * field.period[1]
+    fz = (altitude - field.base) / field.spacing[0]
+    fz = min(max(fz, 0.0), field.distance.shape[0] - 1.000001)
+    return node_distance(field, x, y, fz) - mean_shift(field, blur)
 
 
 @kernel

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from skybake.cloud_fields.chart import tile_place
+from skybake.cloud_fields.chart import chart_stretch, cloud_place
 from skybake.cloud_fields.field import clearance_at, extinction_at
 from skybake.clouds.harmonics import fill_harmonics
 from skybake.clouds.light import fill_corners, fill_diffuse, sun_depth, sun_share
@@ -130,6 +130,9 @@ def fill_march(
         if end <= begin:
             continue
         place = _look(light, radius, altitude, directions[n], sun, begin, scratch)
+        # Farther from the observer the plane is stretched more.
+        far = end * dx, end * dy, altitude + end * dz
+        stretch = chart_stretch(field, radius, far[0], far[1], far[2])
         passes, depth = 1.0, 0.0
         weighted = total = 0.0
         at = begin
@@ -141,15 +144,15 @@ def fill_march(
             px, py, pz = middle * dx, middle * dy, altitude + middle * dz
             above = pz + radius
             h = math.sqrt(px * px + py * py + above * above) - radius
-            x, y = tile_place(field, radius, px, py, pz)
             blur = middle * marching.pixel
+            x, y, erosion, room = cloud_place(field, radius, px, py, pz, h, blur)
             shortest = marching.shortest + blur
-            clear = clearance_at(field, x, y, h, blur)
+            clear = min(clearance_at(field, x, y, h, blur), room) / stretch
             if clear > 0.5 * shortest:
                 at = max(middle + clear, at + shortest)
                 step = shortest
                 continue
-            extinction = extinction_at(field, x, y, h, blur)
+            extinction = extinction_at(field, x, y, h, blur, erosion)
             if extinction < THINNEST:
                 at += step
                 step = shortest
@@ -158,7 +161,9 @@ def fill_march(
             if scaled * step > 1.6 * marching.depth and step > 1.01 * shortest:
                 step = max(marching.depth / scaled, shortest)
                 continue
-            toward_sun = _depth_to_sun(field, light, marching, place, x, y, h, blur, scratch)
+            toward_sun = _depth_to_sun(
+                field, light, marching, place, x, y, h, blur, erosion, scratch
+            )
             fill_diffuse(
                 light,
                 place,
@@ -188,7 +193,7 @@ def fill_march(
 
 
 @kernel
-def _depth_to_sun(field, light, marching, place, x, y, h, blur, scratch):
+def _depth_to_sun(field, light, marching, place, x, y, h, blur, erosion, scratch):
     """Optical depth toward the sun without forward peaks; leaves the point's own corners."""
     near = 0.0
     if marching.taps == 0:
@@ -197,7 +202,8 @@ def _depth_to_sun(field, light, marching, place, x, y, h, blur, scratch):
     toward = scratch.local[1]
     for q in range(marching.taps):
         s = marching.reach * (q + 0.5) / marching.taps
-        near += extinction_at(field, x + s * toward[0], y + s * toward[1], h + s * toward[2], blur)
+        east, north, up = s * toward[0], s * toward[1], s * toward[2]
+        near += extinction_at(field, x + east, y + north, h + up, blur, erosion)
     near *= marching.reach / marching.taps * (1.0 - light.fraction)
     s = marching.reach
     fill_corners(

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 from skybake.errors import InputError
 from skybake.formats.cube_file import CUBE_SUFFIXES
 from skybake.formats.exr import ExrWriter
 from skybake.formats.hdr import HdrWriter
-from skybake.formats.scanlines import Rows
 from skybake.formats.spec import MapSpec
 from skybake.formats.targets import check_target
 from skybake.formats.whole_files import WholeFiles
@@ -31,10 +30,13 @@ class RowWriter(Protocol):
 
     clamped: int
 
-    def ready(self, rows: Rows, workers: Workers, /) -> Rows:
-        """Check rows and convert them to what the file holds, on any thread."""
+    def ready(self, rows: Any, workers: Workers, /) -> Any:
+        """Check rows, or those of each part, and convert them to what the file holds.
 
-    def write_ready(self, y_begin: int, y_end: int, rows: Rows) -> None:
+        It is called on any thread.
+        """
+
+    def write_ready(self, y_begin: int, y_end: int, rows: Any, /) -> None:
         """Write rows that `ready` returned, those from `y_begin` up to `y_end`."""
 
 

@@ -23,7 +23,7 @@ import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
 
-WIDER = 1.0
+WIDER = 0.5
 """Levels of the pyramid by which samples are read coarser than their own solid angle: the
 patches of neighbours overlap by then, and their pattern does not show (Krivanek and Colbert)."""
 

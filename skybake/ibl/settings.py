@@ -48,7 +48,7 @@ class LightingMaps:
     diffuse_size: int = 64
     mips: int = 7
     mapping: str = "linear"
-    samples: int = 512
+    samples: int = 1024
     dfg_size: int = 128
     dfg_multiscatter: bool = False
     dfg_upward: bool = False

@@ -15,7 +15,7 @@ from skybake.projection import Equirect, Projection, find_projection
 from skybake.sky.sky import METHODS
 from skybake.units import degrees, metres
 
-SUN_DISCS = ("include", "exclude", "only")
+SUN_DISCS = ("include", "exclude", "only", "separate")
 LARGEST_SUN = math.radians(20.0)
 """Largest diameter of a sun's disc that is drawn in another size than its own. [rad]"""
 
@@ -62,8 +62,8 @@ class Lighting:
         Compass bearing of the sun: 0 = north, clockwise. [rad]
     sun_distance : float or None
         Of the sun; None leaves it where the preset has it. [au]
-    sun_disc : {"include", "exclude", "only"}
-        Whether the map holds the sun's disc, or nothing else.
+    sun_disc : {"include", "exclude", "only", "separate"}
+        Whether the map holds the sun's disc, or nothing else, or each in a part of the file.
     sun_size : float or None
         Angular diameter of the disc as it is drawn, with the light of the true one, at most
         `LARGEST_SUN`; None for its own, or for what a soft one needs. [rad]
@@ -147,11 +147,13 @@ class Encoding:
         Set negative values of colours outside the space to 0.
     omit_exposure : bool
         Leave EXPOSURE, by which some programs divide, out of a Radiance picture.
+    mips : bool
+        Write smaller copies with the map, down to one pixel, for programs that filter textures.
+    layers : bool
+        Keep sky, clouds and sun in parts of the file that add up to the map.
     target : str or None
         Program that the map is for, a name of `skybake.image.target.TARGETS`. It is stated in
         files, and they must be of a format that it takes; `map_settings` sets what it needs.
-    mips : bool
-        Write smaller copies with the map, down to one pixel, for programs that filter textures.
     """
 
     colorspace: str = "lin_rec709"
@@ -161,8 +163,9 @@ class Encoding:
     compression: str = "zip"
     clamp_negative: bool = False
     omit_exposure: bool = False
-    target: str | None = None
     mips: bool = False
+    layers: bool = False
+    target: str | None = None
 
     def __post_init__(self) -> None:
         """Refuse what cannot be stored."""
@@ -234,8 +237,9 @@ class MapSettings:
             "clamp_negative": encoding.clamp_negative,
             "omit_exposure": encoding.omit_exposure,
             "method": lighting.method,
-            **({} if encoding.target is None else {"target": encoding.target}),
             **({"mips": True} if encoding.mips else {}),
+            **({"layers": True} if encoding.layers else {}),
+            **({} if encoding.target is None else {"target": encoding.target}),
             **(self.clouds.recipe() if has_clouds else {}),
         }
 

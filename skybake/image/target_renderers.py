@@ -22,7 +22,7 @@ RENDERERS = (
         title="Blender: Environment Texture of a World",
         maps={"equirect": EITHER},
         axes=Axes(east="+X", north="+Y", up="+Z"),
-        verified=BY_DOCUMENTATION,
+        verified="Blender 5.0.1: cameras see the directions that a map encodes",
         rotation=WEST,
         reasons={
             "maps": Reason(
@@ -65,7 +65,7 @@ RENDERERS = (
         title="Mitsuba: emitter envmap",
         maps={"equirect": EITHER},
         axes=GRAPHICS,
-        verified="Mitsuba 3.9.1: rays to all sides return the directions that they have",
+        verified="Mitsuba 3.9.1: rays see the directions that a map encodes",
         equirect_rows="poles",
         reasons={
             "maps": Reason(
@@ -108,7 +108,7 @@ RENDERERS = (
         title="OpenEXR: programs that follow its envmap attribute, as exrenvmap",
         maps={"equirect": (".exr",), "cubemap": (".exr",)},
         axes=GRAPHICS,
-        verified="exrenvmap of OpenEXR 3.1: cube and latitude-longitude map make each other",
+        verified="exrenvmap of OpenEXR 3.1: it makes the cube of the equirect map",
         cube_layout="exr",
         equirect_rows="poles",
         reasons={

@@ -30,7 +30,7 @@ from skybake.projection.frame import Frame
 from skybake.projection.gnomonic import GnomonicChart
 
 FACES = ("px", "nx", "py", "ny", "pz", "nz")
-LAYOUTS = ("faces", "cross", "vertical-cross", "exr")
+LAYOUTS = ("faces", "cross", "vertical-cross", "row", "column", "exr")
 
 SPACES = {"world": (1, 1, 1), "flip-x": (-1, 1, 1), "flip-z": (1, 1, -1)}
 """Factors from a direction of the cube to that in the world which its texel shows."""
@@ -105,8 +105,9 @@ class Cubemap(Projection):
     ----------
     edge : int
         Width and height of a face. [pixel]
-    layout : {"faces", "cross", "vertical-cross", "exr"}
-        Six files, one horizontal or vertical cross, or one OpenEXR cube environment.
+    layout : {"faces", "cross", "vertical-cross", "row", "column", "exr"}
+        Six files, one horizontal or vertical cross, the faces side by side or one below the other,
+        or one OpenEXR cube environment, which is a column of faces that are flipped.
     space : {"world", "flip-x", "flip-z"}
         A key of `SPACES`. OpenEXR's cube environment is always in that of the world.
     face_names : str
@@ -127,15 +128,15 @@ class Cubemap(Projection):
                 f"cube layout: must be one of {', '.join(LAYOUTS)}, got {self.layout!r}"
             )
         if self.space not in SPACES:
-            raise InputError(f"cube space: must be one of {', '.join(SPACES)}, got {self.space!r}")
+            raise InputError(f"cube-space: must be one of {', '.join(SPACES)}, got {self.space!r}")
         if self.layout == "exr" and self.space != "world":
             raise InputError(
-                f"cube space: must be world for the cube layout exr, got {self.space!r}"
+                f"cube-space: must be world for the cube layout exr, got {self.space!r}"
             )
         names = parse_face_names(self.face_names)
         if self.layout != "faces" and names != FACES:
             raise InputError(
-                f"face names: must belong to the cube layout faces, got {self.layout!r}"
+                f"face-names: must belong to the cube layout faces, got {self.layout!r}"
             )
         check_edge(self.edge)
 
@@ -169,6 +170,12 @@ class Cubemap(Projection):
                 for face, (row, column) in VERTICAL_ORIGINS.items()
             )
             return (Canvas(3 * edge, 4 * edge, upright),)
+        if self.layout == "row":
+            beside = tuple(Part(chart, 0, i * edge) for i, chart in enumerate(charts.values()))
+            return (Canvas(6 * edge, edge, beside),)
+        if self.layout == "column":
+            below = tuple(Part(chart, i * edge) for i, chart in enumerate(charts.values()))
+            return (Canvas(edge, 6 * edge, below),)
         stacked = tuple(
             Part(chart, i * edge, flip=openexr_flip(face))
             for i, (face, chart) in enumerate(charts.items())
@@ -227,7 +234,7 @@ def parse_face_names(text: str) -> tuple[str, ...]:
     is_fine = len({name.casefold() for name in names}) == len(names) == len(FACES)
     if not is_fine or not all(map(_FACE_NAME.fullmatch, names)):
         raise InputError(
-            f"face names: must be {', '.join(FACE_NAMES)} or six different names with commas "
+            f"face-names: must be {', '.join(FACE_NAMES)} or six different names with commas "
             f"between, got {text!r}"
         )
     return names

@@ -88,8 +88,12 @@ def test_a_command_loads_no_other(tmp_path):
 def test_choices_are_those_of_the_engine():
     assert tuple(PROJECTIONS) == values.PROJECTIONS
     fields = {
-        **{"equirect_rows": "rows", "cube_layout": "layout", "cube_space": "space"},
-        **{"face_names": "face_names", "fov": "fov", "look": "azimuth"},
+        "equirect_rows": "rows",
+        "cube_layout": "layout",
+        "cube_space": "space",
+        "face_names": "face_names",
+        "fov": "fov",
+        "look": "azimuth",
     }
     for option, having in values.PROJECTIONS_WITH.items():
         names = (kind.name for kind in PROJECTIONS.values() if hasattr(kind, fields[option]))
@@ -114,7 +118,7 @@ def test_defaults_are_those_of_the_engine():
     engine["projection"] = made.view.projection.name
     shared = given.keys() & engine.keys()
     assert {key: given[key] for key in shared} == {key: engine[key] for key in shared}
-    assert len(shared) == 9
+    assert len(shared) == 10
     shown = {p.name: p.show_default for p in render.params if isinstance(p.show_default, str)}
     for key in engine.keys() & shown.keys():
         value = engine[key]

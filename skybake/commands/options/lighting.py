@@ -87,7 +87,7 @@ lighting_options = options_together(
         "--samples",
         metavar="N",
         type=int,
-        show_default="512",
+        show_default="1024",
         help="Directions in which a texel of a rough level looks; the sun is not sampled.",
     ),
     click.option(
@@ -125,7 +125,7 @@ lighting_options = options_together(
     ),
     click.option(
         "--pixel",
-        type=click.Choice(values.CUBE_PIXELS),
+        type=click.Choice(values.PIXELS),
         show_default="auto",
         help="Stored type of the cubes; auto takes half where it holds every value. rgb9e5 and "
         "r11g11b10 are of ktx2.",

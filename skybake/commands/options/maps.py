@@ -26,8 +26,8 @@ _SHAPES = {
 }
 _ENCODINGS = (
     *("colorspace", "units", "ev", "pixel", "compression", "clamp_negative"),
-    *("omit_exposure", "mips", "sun_disc", "sun_size", "sun_soft", "sun_strength", "method"),
-    "target",
+    *("omit_exposure", "mips", "layers", "target", "method"),
+    *("sun_disc", "sun_size", "sun_soft", "sun_strength"),
 )
 
 map_options = options_together(
@@ -71,7 +71,8 @@ map_options = options_together(
         "--cube-layout",
         type=click.Choice(values.CUBE_LAYOUTS),
         show_default="faces",
-        help="Six files px nx py ny pz nz, one horizontal or vertical cross, or one OpenEXR cube.",
+        help="Six files px nx py ny pz nz, one horizontal or vertical cross, row or column, or one "
+        "OpenEXR cube.",
     ),
     click.option(
         "--cube-space",
@@ -142,6 +143,11 @@ map_options = options_together(
         help="Write smaller copies with the map, down to one pixel, as programs need that filter "
         "textures; of an equirect .exr or a cubemap whose size is a power of two.",
     ),
+    click.option(
+        "--layers",
+        is_flag=True,
+        help="Keep sky, clouds and sun in parts of an .exr besides what they add up to.",
+    ),
     click.option("--clamp-negative", is_flag=True, help="Set negative values (out of gamut) to 0."),
     click.option(
         "--omit-exposure",
@@ -152,7 +158,8 @@ map_options = options_together(
         "--sun-disc",
         type=click.Choice(values.SUN_DISCS),
         show_default="include",
-        help="Whether the map holds the sun's disc, or nothing else.",
+        help="Whether the map holds the sun's disc, or nothing else, or as separate parts of an "
+        ".exr.",
     ),
     click.option(
         "--sun-size",
@@ -206,8 +213,9 @@ def map_needs(options: Mapping[str, Any]) -> Needs:
         ),
         **dict.fromkeys(
             ("sun_size", "sun_soft", "sun_strength"),
+            # Lights beside the map have them too.
             (
-                disc != "exclude",
+                disc != "exclude" or bool(options.get("lights")),
                 "cannot be combined with --sun-disc exclude"
                 if options["sun_disc"] is not None
                 else f"needs --sun-disc include with --target {options['target']}",
@@ -217,8 +225,32 @@ def map_needs(options: Mapping[str, Any]) -> Needs:
         "pixel": (not is_radiance, "needs an .exr, .ktx2 or .dds output"),
         "compression": (suffix in {".exr", ".ktx2"}, "needs an .exr or .ktx2 output"),
         "mips": (not is_radiance, "needs an .exr, .ktx2 or .dds output"),
+        "layers": (
+            suffix == ".exr" and not options["mips"] and options["sun_disc"] != "only",
+            "needs an .exr output that holds the sky, without --mips",
+        ),
         "units": (options["ev"] is None, "cannot be combined with --ev"),
     }
+
+
+def _check_suffix(suffix: str, options: Mapping[str, Any]) -> None:
+    layout = options["cube_layout"]
+    if layout == "exr" and suffix != ".exr":
+        raise click.UsageError("--cube-layout exr: needs an .exr output")
+    if suffix in values.CUBE_SUFFIXES:
+        if _projection(options) != "cubemap":
+            raise click.UsageError(f"--output: {suffix} needs --projection cubemap")
+        if layout not in {None, "faces"}:
+            raise click.UsageError(f"--cube-layout {layout}: needs an .exr or .hdr output")
+        if options["compression"] not in {None, "zstd", "none"}:
+            raise click.UsageError(
+                f"--compression: of a .ktx2 must be zstd or none, got {options['compression']!r}"
+            )
+    if options["sun_disc"] == "separate" and (suffix != ".exr" or options["mips"]):
+        problem = "cannot be combined with --mips" if options["mips"] else "needs an .exr output"
+        raise click.UsageError(f"--sun-disc separate: {problem}")
+    if options["pixel"] in {"rgb9e5", "r11g11b10"} and suffix != ".ktx2":
+        raise click.UsageError(f"--pixel {options['pixel']}: needs a .ktx2 output")
 
 
 def _target(options: Mapping[str, Any]) -> Target | None:
@@ -262,23 +294,6 @@ def _sun_disc(options: Mapping[str, Any]) -> str:
     target = _target(options)
     disc: str = options["sun_disc"] or ("include" if target is None else target.sun_disc)
     return disc
-
-
-def _check_suffix(suffix: str, options: Mapping[str, Any]) -> None:
-    layout = options["cube_layout"]
-    if layout == "exr" and suffix != ".exr":
-        raise click.UsageError("--cube-layout exr: needs an .exr output")
-    if suffix in values.CUBE_SUFFIXES:
-        if _projection(options) != "cubemap":
-            raise click.UsageError(f"--output: {suffix} needs --projection cubemap")
-        if layout not in {None, "faces"}:
-            raise click.UsageError(f"--cube-layout {layout}: needs an .exr or .hdr output")
-        if options["compression"] not in {None, "zstd", "none"}:
-            raise click.UsageError(
-                f"--compression: of a .ktx2 must be zstd or none, got {options['compression']!r}"
-            )
-    if options["pixel"] in {"rgb9e5", "r11g11b10"} and suffix != ".ktx2":
-        raise click.UsageError(f"--pixel {options['pixel']}: needs a .ktx2 output")
 
 
 def map_settings(options: Mapping[str, Any], **others: Any) -> MapSettings:
