@@ -56,8 +56,8 @@ def coarser(cube: Cube, edge: int) -> Cube:
     blocks = (6, edge, factor, edge, factor, cube.shape[3])
     light = (cube * sizes[..., None].astype(np.float32)).reshape(blocks)
     total = sizes.reshape(edge, factor, edge, factor).sum(axis=(1, 3))
-    mean = light.sum(axis=(2, 4), dtype=np.float64) / total[..., None]
-    return mean.astype(np.float32)
+    mean: Cube = (light.sum(axis=(2, 4), dtype=np.float64) / total[..., None]).astype(np.float32)
+    return mean
 
 
 def pyramid(cube: Cube) -> list[Cube]:

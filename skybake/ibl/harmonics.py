@@ -57,7 +57,7 @@ def harmonics_of(cube: Cube, points: Points) -> Array:
     """
     edge = cube.shape[1]
     sizes, directions = texel_sizes(edge)[..., None], texel_directions(edge)
-    total = basis(points.directions).T @ points.flux
+    total: Array = basis(points.directions).T @ points.flux
     for face, toward in zip(cube, directions, strict=True):
         light = (face * sizes).reshape(-1, 3)
         total += basis(toward.reshape(-1, 3).astype(np.float64)).T @ light
@@ -71,7 +71,8 @@ def basis(directions: Array) -> Array:
         *(np.ones_like(x), y, z, x),
         *(x * y, y * z, 3.0 * z * z - 1.0, x * z, x * x - y * y),
     )
-    return np.stack(functions, axis=-1) * NORMALISATION
+    values: Array = np.stack(functions, axis=-1) * NORMALISATION
+    return values
 
 
 def irradiance_harmonics(harmonics: Array) -> Array:
