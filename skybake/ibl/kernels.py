@@ -158,7 +158,8 @@ def fill_dfg(first_row, rings, cosines, out):
     first_row : int
         Number of the first one.
     rings, cosines : ndarray of float64
-        Quantiles of half vectors' angles from the normal, and cosines of their turns about it.
+        Roots of the shares of half vectors that are farther from the normal, evenly spaced, and
+        cosines of their turns about it.
     out : ndarray of float32, shape (row, edge, 2)
         Scale and bias.
     """
@@ -170,8 +171,11 @@ def fill_dfg(first_row, rings, cosines, out):
             view = (j + 0.5) / edge
             across = math.sqrt(1.0 - view * view)
             scale, bias = 0.0, 0.0
-            for u in rings:
-                squared = (1.0 - u) / (1.0 + (a - 1.0) * u)
+            for ring in rings:
+                # The share of half vectors beyond a ring is its square, since they weigh as the
+                # inverse of their height.
+                beyond = ring * ring
+                squared = beyond / (1.0 + (a - 1.0) * (1.0 - beyond))
                 height, aside = math.sqrt(squared), math.sqrt(1.0 - squared)
                 for cosine in cosines:
                     meeting = view * height + across * aside * cosine
@@ -180,7 +184,7 @@ def fill_dfg(first_row, rings, cosines, out):
                         continue
                     shadowing = light * math.sqrt(view * view * (1.0 - a) + a)
                     shadowing += view * math.sqrt(light * light * (1.0 - a) + a)
-                    weight = 2.0 * light * meeting / (shadowing * height)
+                    weight = 4.0 * ring * light * meeting / (shadowing * height)
                     rest = 1.0 - meeting
                     fresnel = rest * rest
                     fresnel *= fresnel * rest
