@@ -51,7 +51,7 @@ def bake_lighting_of_file(
     begin("map")
     environment = load_environment(source)
     disc = None if keeps_sun else stated_disc(source, environment)
-    around = surroundings_of_environment(environment, maps.source_edge, rotation, disc, workers)
+    around = surroundings_of_environment(environment, maps, rotation, disc, workers)
     space = environment.space or next(iter(COLOUR_SPACES.values()))
     white = environment.white_luminance
     spec = MapSpec(*(1, 1, space, white or 1.0), attributes={"skybake:source": source.name})

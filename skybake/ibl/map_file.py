@@ -14,11 +14,17 @@ from skybake.constants import ASTRONOMICAL_UNIT
 from skybake.environment.environment import Environment
 from skybake.environment.resample import resample
 from skybake.errors import InputError
-from skybake.ibl.surroundings import Surroundings, surroundings_of_cube, without_disc
+from skybake.ibl.cube import Cube
+from skybake.ibl.highlights import split_highlights
+from skybake.ibl.settings import LightingMaps
+from skybake.ibl.surroundings import Surroundings, without_disc
 from skybake.image.light import light_from_attributes
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.projection.cubemap import Cubemap
 from skybake.projection.of_file import file_recipe
+
+SMALLEST = 16
+"""Edge of the coarsest cube that a map is filtered from. [pixel]"""
 
 
 class StatedDisc(NamedTuple):
@@ -39,7 +45,7 @@ class StatedDisc(NamedTuple):
 
 def surroundings_of_environment(
     environment: Environment,
-    edge: int,
+    maps: LightingMaps,
     rotation: float = 0.0,
     disc: StatedDisc | None = None,
     workers: Workers = ALL_CPUS,
@@ -50,22 +56,39 @@ def surroundings_of_environment(
     ----------
     environment : Environment
         The map.
-    edge : int
-        Of the cube. [pixel]
+    maps : LightingMaps
+        What is to be made of it.
     rotation : float, optional
         Compass bearing that the -Z of the cube looks to. [rad]
     disc : StatedDisc, optional
         What is to be taken away, and replaced by what is around it.
     workers : Workers, optional
         Threads that do the work.
+
+    Notes
+    -----
+    The cube that is filtered has no more texels than the map has pixels: a sun of one pixel is to
+    stay one texel, which can be told from a lamp.
     """
-    faces = resample(environment, Cubemap(edge), rotation, workers).pixels
-    cube = np.stack(faces)
-    if disc is not None:
+    count = sum(pixels.shape[0] * pixels.shape[1] for pixels in environment.pixels)
+    edge = maps.source_edge
+    while edge > SMALLEST and 6 * edge * edge > count:
+        edge //= 2
+    pixel = math.sqrt(4.0 * math.pi / count)
+
+    def laid_out(size: int) -> Cube:
+        cube = np.stack(resample(environment, Cubemap(size), rotation, workers).pixels)
+        if disc is None:
+            return cube
         elevation = 0.5 * math.pi - disc.zenith
         centre = direction_from_angles(disc.bearing - rotation, elevation)
-        cube = without_disc(cube, centre, disc.radius)
-    return surroundings_of_cube(cube)
+        return without_disc(cube, centre, disc.radius, pixel)
+
+    cube = laid_out(edge)
+    smooth, points = split_highlights(cube)
+    if "specular" in maps.parts and edge < maps.specular_size:
+        cube = laid_out(maps.specular_size)
+    return Surroundings(cube, smooth, points)
 
 
 def stated_disc(path: Path, environment: Environment) -> StatedDisc | None:

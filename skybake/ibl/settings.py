@@ -11,8 +11,9 @@ PARTS = ("specular", "diffuse", "sh", "dfg")
 FORMATS = ("ktx2", "dds", "exr")
 MAPPINGS = ("linear", "filament")
 
-SOURCE_EDGE = 512
-"""Least edge of the cube that is filtered. [pixel]"""
+SMALLEST_SOURCE, USUAL_SOURCE = 128, 512
+"""Edges of the cube that is filtered: at least, and of which specular cubes are not averaged of
+more than one texel where they are larger. [pixel]"""
 
 LARGEST_SPECULAR, LARGEST_DIFFUSE, LARGEST_DFG = 2048, 512, 1024
 FEWEST_SAMPLES, MOST_SAMPLES = 16, 65536
@@ -76,7 +77,8 @@ class LightingMaps:
     @property
     def source_edge(self) -> int:
         """Edge of the cube that is filtered. [pixel]"""
-        return max(SOURCE_EDGE, self.specular_size)
+        finer = max(2 * self.specular_size, SMALLEST_SOURCE)
+        return max(min(finer, USUAL_SOURCE), self.specular_size)
 
     def levels(self) -> list[tuple[int, float]]:
         """Return edge [pixel] and perceptual roughness of each level of the specular cube."""

@@ -10,7 +10,6 @@ import numpy as np
 from skybake.angles import direction_from_angles, zenith_azimuth
 from skybake.colour.space import rgb_from_xyz
 from skybake.ibl.cube import Cube, texel_directions
-from skybake.ibl.highlights import split_highlights
 from skybake.ibl.points import Points, disc, no_points
 from skybake.image.raster import Raster
 from skybake.image.scene import Scene
@@ -24,10 +23,10 @@ class Surroundings:
 
     Attributes
     ----------
-    cube : ndarray of float32, shape (6, n, n, 3)
+    cube : ndarray of float32, shape (6, m, m, 3)
         All of it, as a perfect mirror shows it.
     smooth : ndarray of float32, shape (6, n, n, 3)
-        All but the points.
+        All but the points, as large as its details need.
     points : Points
         What is too small for texels, such as the sun.
     """
@@ -40,12 +39,6 @@ class Surroundings:
     def peak(self) -> float:
         """Largest magnitude of a value."""
         return float(np.abs(self.cube).max())
-
-
-def surroundings_of_cube(cube: Cube) -> Surroundings:
-    """Take the small bright spots of a cube for points, see `split_highlights`."""
-    smooth, points = split_highlights(cube)
-    return Surroundings(cube, smooth, points)
 
 
 def surroundings_of_scene(scene: Scene, edge: int) -> Surroundings:
@@ -88,7 +81,7 @@ def sun_points(scene: Scene) -> Points:
     return Points(directions, flux)
 
 
-def without_disc(cube: Cube, direction: np.ndarray, radius: float) -> Cube:
+def without_disc(cube: Cube, direction: np.ndarray, radius: float, pixel: float = 0.0) -> Cube:
     """Return a cube in which a disc is as bright as the ring around it.
 
     Parameters
@@ -97,11 +90,13 @@ def without_disc(cube: Cube, direction: np.ndarray, radius: float) -> Cube:
         The light.
     direction, radius : ndarray of float64, shape (3,), float
         Unit vector of the disc's centre, and its angular radius. [rad]
+    pixel : float, optional
+        Extent of the pixels that the cube was made of, if they were larger than its texels. [rad]
     """
     edge = cube.shape[1]
-    # The diagonal of the largest texels: every one that the disc touches.
-    reach = radius + math.sqrt(2.0) * 2.0 / edge
-    ring = reach + 3.0 * math.pi / 2.0 / edge
+    # The largest texels are 2 / edge wide, and the disc touches them up to their diagonal.
+    extent = max(pixel, 2.0 / edge)
+    reach, ring = radius + 1.5 * extent, radius + 3.5 * extent
     apart = np.linalg.norm(texel_directions(edge) - direction.astype(np.float32), axis=-1)
     distance = 2.0 * np.arcsin(np.minimum(0.5 * apart, 1.0))
     around = (distance > reach) & (distance <= ring)

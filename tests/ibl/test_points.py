@@ -83,5 +83,3 @@ def test_harmonics_of_a_sun_are_the_functions_in_its_direction(sun):
     assert found[2] == pytest.approx(linear * z * FLUX, rel=1e-4)
     assert found[3] == pytest.approx(linear * x * FLUX, rel=1e-4)
     assert found[7] == pytest.approx(math.sqrt(15.0 / (4.0 * math.pi)) * x * z * FLUX, rel=1e-4)
-
-
