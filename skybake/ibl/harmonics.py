@@ -77,7 +77,8 @@ def basis(directions: Array) -> Array:
 
 def irradiance_harmonics(harmonics: Array) -> Array:
     """Return the coefficients of irradiance, shape (9, 3), from those of light."""
-    return COSINE[:, None] * harmonics
+    irradiance: Array = COSINE[:, None] * harmonics
+    return irradiance
 
 
 def polynomial(harmonics: Array) -> Array:
@@ -85,7 +86,8 @@ def polynomial(harmonics: Array) -> Array:
 
     It is what a white diffuse surface shows, and what Filament's shaders evaluate.
     """
-    return irradiance_harmonics(harmonics) / math.pi * NORMALISATION[:, None]
+    coefficients: Array = irradiance_harmonics(harmonics) / math.pi * NORMALISATION[:, None]
+    return coefficients
 
 
 def filament_text(harmonics: Array) -> str:
