@@ -13,7 +13,11 @@ from skybake.version import __version__
 
 if TYPE_CHECKING:
     from skybake.baking import Baked, bake
+    from skybake.baking.convert import Converted, convert
     from skybake.colour.space import ColourSpace
+    from skybake.environment.environment import Environment
+    from skybake.environment.load import load_environment
+    from skybake.environment.resample import resample
     from skybake.ephemeris.moment import Moment, TimeSpan, sun_at
     from skybake.ephemeris.place import SITES, Place, find_place
     from skybake.errors import (
@@ -90,10 +94,12 @@ __all__ = [
     "Coefficients",
     "ColourSpace",
     "Constituent",
+    "Converted",
     "CornetteShanksPhase",
     "Cubemap",
     "DoubleHenyeyGreensteinPhase",
     "Encoding",
+    "Environment",
     "Equirect",
     "ExponentialProfile",
     "ExposureCurve",
@@ -144,12 +150,15 @@ __all__ = [
     "__version__",
     "bake",
     "bake_sequence",
+    "convert",
     "default_manifest",
     "find_place",
+    "load_environment",
     "load_preset",
     "map_settings",
     "plan_sequence",
     "preset_names",
+    "resample",
     "sun_at",
 ]
 
@@ -165,10 +174,12 @@ _HOMES = {
     "Coefficients": "skybake.preset",
     "ColourSpace": "skybake.colour.space",
     "Constituent": "skybake.preset",
+    "Converted": "skybake.baking.convert",
     "CornetteShanksPhase": "skybake.preset",
     "Cubemap": "skybake.projection",
     "DoubleHenyeyGreensteinPhase": "skybake.preset",
     "Encoding": "skybake.image.settings",
+    "Environment": "skybake.environment.environment",
     "Equirect": "skybake.projection",
     "ExponentialProfile": "skybake.preset",
     "ExposureCurve": "skybake.sequence.exposure_curve",
@@ -204,8 +215,8 @@ _HOMES = {
     "Ramp": "skybake.sequence.ramp",
     "RayleighPhase": "skybake.preset",
     "Scene": "skybake.image.scene",
-    "SITES": "skybake.ephemeris.place",
     "SequenceResult": "skybake.sequence.run",
+    "SITES": "skybake.ephemeris.place",
     "Sky": "skybake.pipeline",
     "SkybakeError": "skybake.errors",
     "Spectrum": "skybake.preset",
@@ -219,12 +230,15 @@ _HOMES = {
     "Workers": "skybake.jit.workers",
     "bake": "skybake.baking",
     "bake_sequence": "skybake.sequence.bake",
+    "convert": "skybake.baking.convert",
     "default_manifest": "skybake.sequence.products",
     "find_place": "skybake.ephemeris.place",
+    "load_environment": "skybake.environment.load",
     "load_preset": "skybake.preset",
     "map_settings": "skybake.image.settings",
     "plan_sequence": "skybake.sequence.planning",
     "preset_names": "skybake.preset",
+    "resample": "skybake.environment.resample",
     "sun_at": "skybake.ephemeris.moment",
 }
 

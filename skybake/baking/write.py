@@ -31,6 +31,9 @@ from skybake.sidecar.map_light import MapLight, map_light
 
 BAND_ROWS = 128
 
+FROM_BELOW = ("skybake:illuminanceFromBelow", "skybake:groundIlluminanceFromBelow")
+"""Attributes of maps that do not show the ground. [lx]"""
+
 Progress = Callable[[float], None]
 
 
@@ -54,6 +57,9 @@ class Baked(Light):
         CIE xy of the light that is white in it; None for D65.
     clamped : int
         Negative values that became 0 in a format without a sign.
+    from_below : tuple of 2 float, or None
+        Illuminance of a plane that looks down by what the map shows below the horizon instead of
+        the ground, and by the ground; None of a map that shows it. [lx]
     warnings : tuple of str
         What the files lose of the light, or why it may not be what was meant, a line each.
     map_light : MapLight or None
@@ -69,6 +75,7 @@ class Baked(Light):
     preview_ev: float | None
     preview_white: tuple[float, float] | None
     clamped: int
+    from_below: tuple[float, float] | None = None
     warnings: tuple[str, ...] = ()
     map_light: MapLight | None = None
     light_files: tuple[Path, ...] = ()
@@ -216,9 +223,11 @@ def bake_scene(
         scene.light_clouds()
     begin("pixels")
     light = light_of_scene(scene)
+    from_below = _from_below(scene)
     described = None if light_files is None else map_light(scene, light)
     attributes = {
         **attributes_from_light(light),
+        **({} if from_below is None else dict(zip(FROM_BELOW, from_below, strict=True))),
         **recipe_attributes(planet, settings),
         **(attributes or {}),
     }
@@ -276,10 +285,19 @@ def bake_scene(
         preview_ev=None if shown is None else shown.ev,
         preview_white=None if shown is None else shown.white,
         clamped=sum(each.writer.clamped for each in pictures),
+        from_below=from_below,
         warnings=tuple(warnings),
         map_light=described,
         light_files=tuple(light_files or ()),
     )
+
+
+def _from_below(scene: Scene) -> tuple[float, float] | None:
+    if scene.settings.view.below_horizon == "ground":
+        return None
+    from skybake.image.below_horizon import light_from_below
+
+    return light_from_below(scene)
 
 
 def _ignore(_: str) -> None:

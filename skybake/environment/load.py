@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ from skybake.errors import InputError
 from skybake.formats.reader import ImageFile
 from skybake.projection import find_projection
 from skybake.projection.chart import Projection, size_text
-from skybake.projection.cubemap import Cubemap
+from skybake.projection.cubemap import Cubemap, parse_face_names
 from skybake.projection.of_file import file_projection, file_recipe, sized
 
 _SHAPES = "2:1, or a cube's cross, row or column, or be given by its projection"
@@ -96,7 +97,11 @@ def _files(path: Path, image: ImageFile | None, given: Projection | str | None) 
         return (path,)
     if isinstance(shown, dict) and not says_faces and given is None:
         return (path,)
-    return face_files(path, is_face=says_faces or given is not None) or (path,)
+    names = None
+    if isinstance(shown, dict) and says_faces and isinstance(shown.get("face_names"), str):
+        with suppress(InputError):
+            names = parse_face_names(shown["face_names"])
+    return face_files(path, names, is_face=says_faces or given is not None) or (path,)
 
 
 def _projection(

@@ -53,7 +53,8 @@ def bake_lighting_of_file(
     disc = None if keeps_sun else stated_disc(source, environment)
     around = surroundings_of_environment(environment, maps, rotation, disc, workers)
     space = environment.space or next(iter(COLOUR_SPACES.values()))
-    white = environment.white_luminance
-    spec = MapSpec(*(1, 1, space, white or 1.0), attributes={"skybake:source": source.name})
+    spec = MapSpec(
+        *(1, 1, space, environment.white_luminance), attributes={"skybake:source": source.name}
+    )
     baked = write_baked(around, output, maps, form, spec, workers, begin)
-    return replace(baked, white_luminance=white, warnings=environment.warnings)
+    return replace(baked, warnings=environment.warnings)
