@@ -3,6 +3,7 @@
 import json
 
 import numpy as np
+import OpenImageIO
 import pytest
 
 from skybake.commands.ibl import ibl
@@ -116,6 +117,40 @@ def test_targets_set_axes_format_and_the_roughness_of_levels(tmp_path):
     names = {f"f_m{mip}_{face}.exr" for mip in range(5) for face in FACES}
     assert names == {name for name in listing(tmp_path) if name.startswith("f_")}
     assert pixels(tmp_path / "f_m4_px.exr").shape == (1, 1, 3)
+
+
+def test_cubes_of_a_sky_and_of_a_map_are_turned_alike(tmp_path, sunny):
+    """To -Z, where their suns are then."""
+    for name, of in (("sky", SUN), ("map", ("--input", sunny))):
+        turned = ("--parts", "sh", "--rotate", "60deg", "-q", "-o", tmp_path / name)
+        assert invoke("ibl", *of, *turned).exit_code == 0
+        radiance = json.loads((tmp_path / f"{name}_sh.json").read_text())["radiance"]
+        _, z, x = (radiance[i][1] for i in (1, 2, 3))
+        assert z < 0.0
+        assert abs(x) < 0.01 * abs(z)
+
+
+def test_maps_of_unknown_scale_make_files_that_state_none(tmp_path):
+    untagged = tmp_path / "untagged.exr"
+    out = OpenImageIO.ImageOutput.create(str(untagged))
+    assert out.open(str(untagged), OpenImageIO.ImageSpec(32, 16, 3, "half"))
+    assert out.write_image(np.full((16, 32, 3), 0.5, np.float32))
+    out.close()
+    made = invoke("ibl", "--input", untagged, *SETS, "--json", "-o", tmp_path / "out")
+    assert made.exit_code == 0, made.output
+    assert json.loads(made.stdout)["white_luminance_cd_m2"] is None
+    levels, texts, _ = cube_of(tmp_path / "out_specular.ktx2")
+    assert "whiteLuminance" not in texts
+    assert all(level == pytest.approx(0.5) for level in levels)
+
+
+def test_cubes_are_written_as_dds(tmp_path, sunny):
+    stored = ("--format", "dds", "--parts", "specular", *SMALL[:4])
+    assert invoke("ibl", "--input", sunny, *stored, "-q", "-o", tmp_path / "a").exit_code == 0
+    data = (tmp_path / "a_specular.dds").read_bytes()
+    # Header and DX10 header, then six faces of 16, 8, 4 and 2 texels of four halves.
+    assert data[:4] == b"DDS "
+    assert len(data) == 148 + 6 * 8 * (256 + 64 + 16 + 4)
 
 
 def test_files_of_faces_are_named_in_a_folder_as_cmgen_names_them(tmp_path):

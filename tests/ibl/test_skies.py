@@ -73,7 +73,7 @@ def test_irradiance_and_harmonics_are_those_of_an_equirect_map(world):
         assert shown[i] == pytest.approx(expected, rel=5e-3)
     expected = basis(toward).T @ flux + basis(place[None]).T * sun
     found = harmonics_of(around.smooth, around.points)
-    assert np.abs(found - expected).max() < 2e-3 * expected[0].max()
+    assert np.abs(found - expected).max() < 5e-3 * expected[0].max()
 
 
 def test_the_points_of_a_setting_sun_hold_the_light_that_files_state():
