@@ -14,6 +14,7 @@ from skybake.version import __version__
 if TYPE_CHECKING:
     from skybake.baking import Baked, bake
     from skybake.baking.convert import Converted, convert
+    from skybake.baking.orientation_chart import bake_orientation_chart
     from skybake.colour.space import ColourSpace
     from skybake.environment.environment import Environment
     from skybake.environment.load import load_environment
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     from skybake.image.picture_settings import PictureSettings
     from skybake.image.scene import Scene
     from skybake.image.settings import Clouds, Encoding, Lighting, MapSettings, View, map_settings
+    from skybake.image.target import TARGETS, Target, TargetAxes, TargetReason, find_target
     from skybake.jit.workers import Workers
     from skybake.optics.changes import PresetChanges
     from skybake.pipeline import Pipeline, Sky
@@ -80,9 +82,11 @@ if TYPE_CHECKING:
     from skybake.sequence.products import Products, default_manifest
     from skybake.sequence.ramp import Ramp
     from skybake.sequence.run import FrameEvent, SequenceResult
+    from skybake.sidecar.map_light import MapLight
 
 __all__ = [
     "SITES",
+    "TARGETS",
     "Absorber",
     "Aerosol",
     "Angular",
@@ -114,6 +118,7 @@ __all__ = [
     "InputError",
     "Light",
     "Lighting",
+    "MapLight",
     "MapSettings",
     "Moment",
     "Octahedral",
@@ -142,6 +147,9 @@ __all__ = [
     "Star",
     "TabulatedPhase",
     "TabulatedProfile",
+    "Target",
+    "TargetAxes",
+    "TargetReason",
     "TentProfile",
     "Tile",
     "TimeSpan",
@@ -149,10 +157,12 @@ __all__ = [
     "Workers",
     "__version__",
     "bake",
+    "bake_orientation_chart",
     "bake_sequence",
     "convert",
     "default_manifest",
     "find_place",
+    "find_target",
     "load_environment",
     "load_preset",
     "map_settings",
@@ -194,6 +204,7 @@ _HOMES = {
     "InputError": "skybake.errors",
     "Light": "skybake.image.light",
     "Lighting": "skybake.image.settings",
+    "MapLight": "skybake.sidecar.map_light",
     "MapSettings": "skybake.image.settings",
     "Moment": "skybake.ephemeris.moment",
     "Octahedral": "skybake.projection",
@@ -223,16 +234,22 @@ _HOMES = {
     "Star": "skybake.preset",
     "TabulatedPhase": "skybake.preset",
     "TabulatedProfile": "skybake.preset",
+    "Target": "skybake.image.target",
+    "TargetAxes": "skybake.image.target",
+    "TargetReason": "skybake.image.target",
+    "TARGETS": "skybake.image.target",
     "TentProfile": "skybake.preset",
     "Tile": "skybake.preset",
     "TimeSpan": "skybake.ephemeris.moment",
     "View": "skybake.image.settings",
     "Workers": "skybake.jit.workers",
     "bake": "skybake.baking",
+    "bake_orientation_chart": "skybake.baking.orientation_chart",
     "bake_sequence": "skybake.sequence.bake",
     "convert": "skybake.baking.convert",
     "default_manifest": "skybake.sequence.products",
     "find_place": "skybake.ephemeris.place",
+    "find_target": "skybake.image.target",
     "load_environment": "skybake.environment.load",
     "load_preset": "skybake.preset",
     "map_settings": "skybake.image.settings",

@@ -12,7 +12,7 @@ from skybake.formats.spec import Attribute
 from skybake.formats.targets import check_target
 from skybake.formats.whole_files import WholeFiles
 from skybake.projection import PROJECTIONS
-from skybake.sidecar.blender import TURN, blender_script
+from skybake.sidecar.blender import blender_script
 from skybake.sidecar.light_json import light_json
 from skybake.sidecar.map_light import MapLight
 from skybake.sidecar.usd import Common, DomeAndSun, check_usd, usd_layer
@@ -63,7 +63,6 @@ def write_light_file(
     whole: WholeFiles,
     *,
     time: Attribute | None = None,
-    blender_turn: float = TURN,
 ) -> None:
     """Write a light file, which appears together with its map.
 
@@ -79,8 +78,6 @@ def write_light_file(
         The files that it is to appear with.
     time : str, optional
         Attribute of the map's files: ISO 8601 in UTC, for JSON.
-    blender_turn : float, optional
-        As of `blender_script`.
 
     Raises
     ------
@@ -92,7 +89,7 @@ def write_light_file(
     if suffix == ".usda":
         text = _usd(path, light, names)
     elif suffix == ".py":
-        text = blender_script(light, names, turn=blender_turn)
+        text = blender_script(light, names)
     else:
         text = light_json(light, names, None if time is None else str(time))
     whole.add(path).write_text(text, "utf-8")

@@ -13,6 +13,8 @@ from skybake.image.light import Light, Triple, light_of_scene
 from skybake.image.meter import scene_ev
 from skybake.image.scene import Scene
 from skybake.image.settings import Lighting
+from skybake.image.target import find_target
+from skybake.image.target_sun import target_sun_direction
 from skybake.optics.spectrum import star_at
 from skybake.preset import Planet
 
@@ -33,6 +35,12 @@ class MapLight(Light):
         Luminance that a pixel value of 1 stands for. [cd m⁻²]
     rotation : float
         Compass bearing that the map's -Z looks to. [rad]
+    target : str or None
+        Program that the map is for, a name of `skybake.image.target.TARGETS`.
+    target_turn : float
+        How far the map is turned for that program, which is a part of `rotation`. [rad]
+    target_sun_direction : tuple of float or None
+        Unit vector toward the sun in the axes of that program.
     sun_disc : str
         Which light the map holds, see `skybake.image.settings.Lighting`.
     sun_azimuth, sun_elevation : float
@@ -55,6 +63,9 @@ class MapLight(Light):
     colorspace: str
     white_luminance: float
     rotation: float
+    target: str | None
+    target_turn: float
+    target_sun_direction: Triple | None
     sun_disc: str
     sun_azimuth: float
     sun_elevation: float
@@ -90,16 +101,20 @@ def map_light(scene: Scene, light: Light | None = None) -> MapLight:
     light : Light, optional
         Its light, if that is known.
     """
-    settings = scene.settings
+    settings, target = scene.settings, scene.settings.encoding.target
+    projection = settings.view.projection.name
     normal, _ = scene.sun_xyz()
     star = star_at(scene.planet.star, settings.lighting.sun_distance)
     return MapLight(
         **vars(light_of_scene(scene) if light is None else light),
         preset=scene.planet.name,
-        projection=settings.view.projection.name,
+        projection=projection,
         colorspace=settings.encoding.colorspace,
         white_luminance=settings.encoding.white_luminance,
         rotation=settings.view.rotation,
+        target=target,
+        target_turn=0.0 if target is None else find_target(target).turn(projection),
+        target_sun_direction=None if target is None else target_sun_direction(settings, target),
         sun_disc=settings.lighting.sun_disc,
         sun_azimuth=settings.lighting.sun_azimuth,
         sun_elevation=settings.lighting.sun_elevation,

@@ -54,7 +54,8 @@ def test_json_says_what_was_baked(folder):
     expected = [strength * component for component in baked.sun_colour]
     assert told["sun_irradiance"] == pytest.approx(expected, rel=1e-9)
     assert (told["sun_disc"], told["lights"]) == ("include", [])
-    assert len(told) == 28
+    assert (told["target"], told["target_sun_direction"]) == (None, None)
+    assert len(told) == 30
 
 
 def test_the_suggested_exposure_is_that_of_a_preview():

@@ -33,17 +33,15 @@ def main():
     if unknown:
         parser.error(f"unknown: {', '.join(unknown)}")
     with tempfile.TemporaryDirectory(prefix="skybake-peers-") as folder:
-        baked = bake_files(Path(folder))
-        outcomes = [
-            _run(name, baked, Path(folder), options.pictures) for name in options.names or PEERS
-        ]
+        outcomes = [_run(name, Path(folder), options.pictures) for name in options.names or PEERS]
     return 0 if all(outcomes) else 1
 
 
-def _run(name, baked, folder, pictures):
+def _run(name, folder, pictures):
     """Whether a program is absent, or all its measurements are within their limits."""
     own = folder / name
     own.mkdir()
+    baked = bake_files(own, name)
     try:
         rendered = PEERS[name].render(baked, own)
     except AbsentError as reason:

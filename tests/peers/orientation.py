@@ -69,7 +69,7 @@ def measured():
     with tempfile.TemporaryDirectory() as folder:
         files, brightest = bake_directions(folder, "three", "cubemap", 128)
         for what, version, colours in ask_three(files, in_axes("three"), folder):
-            yield f"three cubemap {what}", version, worst_angle(colours, brightest)
+            yield f"three cube {what}", version, worst_angle(colours, brightest)
 
 
 def ask_three(files, directions, _folder):
