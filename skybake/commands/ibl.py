@@ -12,10 +12,9 @@ import click
 
 from skybake.commands.memory import check_memory
 from skybake.commands.options.clouds import check_clouds, clouds_options
-from skybake.commands.options.lighting import (
+from skybake.commands.options.lighting import lighting_needs, lighting_options
+from skybake.commands.options.lighting_settings import (
     lighting_from_options,
-    lighting_needs,
-    lighting_options,
     program_from_options,
     sky_settings,
 )
