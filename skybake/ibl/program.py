@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from skybake.errors import InputError
+from skybake.ibl.settings import FORMATS
 from skybake.image.target import find_target
 
 
@@ -15,8 +16,8 @@ class Program:
 
     Attributes
     ----------
-    format : str
-        One of `skybake.ibl.settings.FORMATS`.
+    formats : tuple of str
+        Those of `skybake.ibl.settings.FORMATS` that it takes, the usual one first.
     space, face_names : str
         As of `skybake.projection.cubemap.Cubemap`.
     pixel : str
@@ -33,7 +34,7 @@ class Program:
         As of `skybake.ibl.settings.LightingMaps`.
     """
 
-    format: str = "ktx2"
+    formats: tuple[str, ...] = FORMATS
     space: str = "world"
     face_names: str = "px"
     pixel: str = "auto"
@@ -44,6 +45,11 @@ class Program:
     dfg_multiscatter: bool = False
     dfg_upward: bool = False
 
+    @property
+    def format(self) -> str:
+        """The usual format."""
+        return self.formats[0]
+
 
 ANY = Program()
 """For a program that is not known."""
@@ -51,11 +57,11 @@ ANY = Program()
 _PROGRAMS: dict[str, dict[str, Any]] = {
     # The aureole of the sun is brighter in cd/m2 than 32 bits of three colours hold; Bevy
     # multiplies texels by the `intensity` of a light, which is the luminance of white here.
-    "bevy": {"pixel": "rgb9e5", "units": "ev15"},
-    "three": {},
+    "bevy": {"formats": ("ktx2",), "pixel": "rgb9e5", "units": "ev15"},
+    "three": {"formats": ("ktx2", "exr")},
     # cmgen's names, and the roughness that Filament's shaders look for in a level.
     "filament": {
-        "format": "exr",
+        "formats": ("exr", "ktx2"),
         "mapping": "filament",
         "mips": 5,
         "dfg_multiscatter": True,

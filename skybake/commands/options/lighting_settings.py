@@ -28,21 +28,12 @@ def program_from_options(options: Mapping[str, Any]) -> Program:
         If it takes none of the format or in the axes that are asked for.
     """
     from skybake.ibl.program import find_program
-    from skybake.image.target import find_target
 
     with _as_usage():
         program = find_program(options["target"])
         if options["target"] is not None:
-            target = find_target(options["target"])
-            space = options["cube_space"]
-            target.check("cubemap", {} if space is None else {"space": space})
-            suffixes = target.maps["cubemap"]
-            wanted = options["file_format"] or program.format
-            if f".{wanted}" not in suffixes:
-                raise InputError(
-                    f"format: must be {' or '.join(suffixes)} for the target {target.name}, "
-                    f"got {wanted!r}"
-                )
+            _check("format", options["file_format"], program.formats, options["target"])
+            _check("cube space", options["cube_space"], (program.space,), options["target"])
     return program
 
 
@@ -114,6 +105,13 @@ def sky_settings(
             sun_disc=options["sun_disc"] or program.sun_disc,
             **given,
             **others,
+        )
+
+
+def _check(name: str, given: str | None, taken: tuple[str, ...], target: str) -> None:
+    if given is not None and given not in taken:
+        raise InputError(
+            f"{name}: must be {' or '.join(taken)} for the target {target}, got {given!r}"
         )
 
 
