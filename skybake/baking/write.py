@@ -26,7 +26,6 @@ from skybake.image.scene import Scene
 from skybake.image.settings import MapSettings
 from skybake.jit.workers import Workers
 from skybake.preset import Planet, load_preset
-from skybake.sidecar.light_file import check_light_file, write_light_file
 from skybake.sidecar.map_light import MapLight, map_light
 
 BAND_ROWS = 128
@@ -138,7 +137,7 @@ def bake(
     planet = preset if isinstance(preset, Planet) else load_preset(preset)
     output = Path(output) if output else default_path(planet, settings)
     preview = None if preview is None else Path(preview)
-    light_files = None if lights is None else [Path(path) for path in lights]
+    light_files = None if lights is None else list(dict.fromkeys(map(Path, lights)))
     check_targets(output, settings, preview, light_files or ())
     scene = Scene(planet, settings)
     if notice is not None and not scene.sky.is_solved:
@@ -175,8 +174,10 @@ def check_targets(
         check_encoding(path, settings)
     if preview is not None:
         check_preview(preview)
-    for path in light_files:
-        check_light_file(path, settings.view.projection.name, map_paths(output, settings))
+    if light_files:
+        from skybake.sidecar.light_file import check_light_files
+
+        check_light_files(light_files, settings.view.projection.name, map_paths(output, settings))
 
 
 def check_encoding(path: Path, settings: MapSettings) -> None:
@@ -272,10 +273,11 @@ def bake_scene(
                 warnings += [] if lost is None else [lost]
             if shown is not None:
                 shown.draw()
-        if described is not None:
+        if light_files and described is not None:
+            from skybake.sidecar.light_file import write_light_files
+
             time = attributes.get("skybake:time")
-            for path in light_files or ():
-                write_light_file(path, described, paths, files, time=time)
+            write_light_files(light_files, described, paths, files, time=time)
     return Baked(
         **vars(light),
         files=paths,
