@@ -58,7 +58,8 @@ _PROGRAMS: dict[str, dict[str, Any]] = {
     # The aureole of the sun is brighter in cd/m2 than 32 bits of three colours hold; Bevy
     # multiplies texels by the `intensity` of a light, which is the luminance of white here.
     "bevy": {"formats": ("ktx2",), "pixel": "rgb9e5", "units": "ev15"},
-    "three": {"formats": ("ktx2", "exr")},
+    # Its loader of KTX 2 makes no cube of texels that are not compressed.
+    "three": {"formats": ("exr",)},
     # cmgen's names, and the roughness that Filament's shaders look for in a level.
     "filament": {
         "formats": ("exr", "ktx2"),

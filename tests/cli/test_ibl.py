@@ -188,6 +188,7 @@ def test_nothing_is_written_if_one_file_of_a_set_fails(tmp_path):
         (("--format", "dds", "--pixel", "rgb9e5"), "--pixel: must be one of auto, half, float"),
         (("--target", "blender"), "'blender' is not one of 'bevy', 'three', 'filament'"),
         (("--target", "bevy", "--format", "exr"), "--format: must be ktx2 for the target bevy"),
+        (("--target", "three", "--format", "ktx2"), "--format: must be exr for the target three"),
         (("--target", "bevy", "--cube-space", "world"), "--cube-space: must be flip-z"),
         (("--target", "bevy", "--sun-soft"), "--sun-soft: needs --sun-disc include"),
         (("--face-names", "posx"), "--face-names: needs --format exr"),
