@@ -14,6 +14,7 @@ from skybake.clouds.air import ClearAir
 from skybake.clouds.cloudscape import Cloudscape
 from skybake.clouds.directions import sun_vector
 from skybake.clouds.layer import Floats, Grid
+from skybake.clouds.suns import suns_over
 from skybake.clouds.unlit import Layer
 from skybake.jit.workers import Workers
 from skybake.optics.medium import Array
@@ -30,7 +31,8 @@ class Quality(NamedTuple):
     columns : int
         Voxels of light across the tile of a generated layer.
     voxels : int
-        Up to which those of a file are divided where they are thick.
+        Up to which those of a file are divided where they are thick; shared by several heights of
+        the sun, each of which takes memory.
     work, work_of_file : float
         Of the ordinates, for the order that is chosen: voxels times `_WORK`; of a generated layer,
         and of a file's voxels.
@@ -46,7 +48,7 @@ class Quality(NamedTuple):
 
 
 QUALITIES = {
-    "draft": Quality(96, 160_000, 6e8, 6e8, 0.6),
+    "draft": Quality(96, 640_000, 6e8, 2.3e9, 0.6),
     "normal": Quality(144, 640_000, 9e8, 2.3e9, 0.4),
     "high": Quality(192, 1_300_000, 8e9, 8e9, 0.2),
 }
@@ -123,7 +125,9 @@ def _layer(
     middle = build_phase(layer.phase, np.array([MIDDLE]))[:, 0]
     share = weights / weights.sum(axis=0)
     phase = build_phase(layer.phase, sky.wavelengths) @ share
-    grid = _grid(field, quality, workers)
+    sun = sun_vector(sky.sun_azimuth, sky.sun_elevation)
+    suns = len(suns_over(sun, sky.atmosphere.medium.r_bottom, sky.altitude, field.top))
+    grid = _grid(field, quality, quality.voxels // suns, workers)
     if is_same_everywhere(grid.extinction):
         return Layer(field, _deck(grid), phase, middle, max(_WORK))
     most = quality.work if field.kind == SURFACE else quality.work_of_file
@@ -131,12 +135,12 @@ def _layer(
     return Layer(field, grid, phase, middle, max(orders, default=min(_WORK)))
 
 
-def _grid(field: CloudField, quality: Quality, workers: Workers) -> Grid:
+def _grid(field: CloudField, quality: Quality, most: int, workers: Workers) -> Grid:
     across = field.period / quality.columns
     height = min(0.5 * float(across.min()), (field.top - field.base) / 12.0)
     spacing = np.array([height, across[1], across[0]])
     if field.kind != SURFACE:
-        spacing = field.spacing / voxel_parts(field, quality.voxels)
+        spacing = field.spacing / voxel_parts(field, most)
     made = light_grid(field, spacing, workers)
     values = made.values
     if field.kind != SURFACE and is_same_everywhere(field.values):
