@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from skybake.cloud_fields.chart import chart_stretch, cloud_place
+from skybake.cloud_fields.chart import chart_stretch, lone_patch, plane_place, shared_place
 from skybake.cloud_fields.field import clearance_at, extinction_at
 from skybake.clouds.harmonics import fill_harmonics
 from skybake.clouds.light import fill_corners, fill_diffuse, sun_depth, sun_share
@@ -21,6 +21,9 @@ FARTHEST = 600.0
 
 OPAQUE = 0.004
 """Transmittance below which nothing behind is seen."""
+
+LEVELS = 12
+"""Steps in which a ray crosses a layer at least."""
 
 THINNEST = 0.02
 """Extinction below which there is no cloud. [km⁻¹]"""
@@ -133,10 +136,14 @@ def fill_march(
         # Farther from the observer the plane is stretched more.
         far = end * dx, end * dy, altitude + end * dz
         stretch = chart_stretch(field, radius, far[0], far[1], far[2])
+        # Up to where the tile lies as it does here.
+        alone = east = north = 0.0
         passes, depth = 1.0, 0.0
         weighted = total = 0.0
         at = begin
-        shortest = marching.shortest + at * marching.pixel
+        # However coarse pixels are, a ray sees the layer at several heights.
+        coarsest = (field.top - field.base) / LEVELS / max(abs(scratch.local[0, 2]), 1e-6)
+        shortest = marching.shortest + min(at * marching.pixel, coarsest)
         step = shortest
         while at < end:
             step = min(step, end - at + 1e-6)
@@ -145,9 +152,17 @@ def fill_march(
             above = pz + radius
             h = math.sqrt(px * px + py * py + above * above) - radius
             blur = middle * marching.pixel
-            x, y, erosion, room = cloud_place(field, radius, px, py, pz, h, blur)
-            shortest = marching.shortest + blur
-            clear = min(clearance_at(field, x, y, h, blur), room) / stretch
+            x, y = plane_place(field, radius, px, py, pz)
+            if middle >= alone:
+                east, north, room = lone_patch(field, x, y)
+                alone = middle + room / stretch
+            if middle < alone:
+                x, y, erosion, room = x + east, y + north, 0.0, alone - middle
+            else:
+                x, y, erosion, room = shared_place(field, x, y, h, blur)
+                room /= stretch
+            shortest = marching.shortest + min(blur, coarsest)
+            clear = min(clearance_at(field, x, y, h, blur) / stretch, room)
             if clear > 0.5 * shortest:
                 at = max(middle + clear, at + shortest)
                 step = shortest
