@@ -26,6 +26,7 @@ _DEPTHS = 96
 _FLATTEST = 1e-9
 
 _ZENITHS, _AZIMUTHS = 32, 64
+_PROBE_FOOTPRINT = 2e-3
 
 
 def without_ground(scene: Scene, evaluate: Evaluate) -> Evaluate:
@@ -56,8 +57,11 @@ def without_ground(scene: Scene, evaluate: Evaluate) -> Evaluate:
         above = np.where(above < LEAST, 0.0, above)
         is_whole = above >= 1.0
         middle = np.where(is_whole, zenith, 0.5 * (low + np.minimum(high, horizon)))
-        height = np.where(is_whole, extent, np.maximum(above * extent, _FLATTEST))
+        # Details of clouds follow the median, which is to be that of pixels as they are.
+        height = np.where(above > 0.0, np.maximum(above * extent, _FLATTEST), extent)
         rows = np.asarray((above > 0.0).any(axis=1))
+        # Clouds cannot be looked for in no pixel at all.
+        rows[0] |= not rows.any()
         shape = np.broadcast_shapes(zenith.shape, azimuth.shape)
         sky = evaluate(*(_rows(part, rows) for part in (middle, azimuth, height)))
         out = np.zeros((*shape, sky.shape[2]), np.float32)
@@ -119,7 +123,7 @@ def light_from_below(scene: Scene) -> tuple[float, float]:
             continue
         zenith = 0.5 * (first + last) + 0.5 * (last - first) * node
         share = 0.5 * (last - first) * weight * np.abs(np.cos(zenith)) * np.sin(zenith)
-        places = zenith[:, None], azimuth, np.full((1, 1), _FLATTEST)
+        places = zenith[:, None], azimuth, np.full((1, 1), _PROBE_FOOTPRINT)
         for i, evaluate in enumerate((without_ground(scene, scene.evaluate), scene.evaluate)):
             luminance = evaluate(*places).astype(float) @ scene.luminance
             totals[i] += 2.0 * math.pi * float(share @ luminance.mean(axis=1))

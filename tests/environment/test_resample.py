@@ -39,7 +39,7 @@ def test_energy_is_kept_to_a_thousandth_with_a_sun(source, sun):
         np.testing.assert_allclose(after, before, rtol=1e-3, err_msg=repr(projection))
 
 
-@pytest.mark.parametrize("width", [64, 256, 1024])
+@pytest.mark.parametrize("width", [64, 256, pytest.param(1024, marks=pytest.mark.slow)])
 def test_energy_of_lamps_at_random_is_kept_to_a_thousandth(width):
     environment = noisy(width)
     before = energy(environment)

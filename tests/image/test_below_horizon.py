@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from skybake.errors import InputError
-from skybake.image.below_horizon import light_from_below
+from skybake.image.below_horizon import RING, light_from_below, without_ground
 from skybake.image.image import image_of_scene
 from skybake.image.scene import Scene
 from skybake.image.settings import map_settings
@@ -41,6 +41,23 @@ def test_the_sky_above_the_true_horizon_stays(altitude):
 
 def test_black_is_nothing():
     assert (pixels("black")[32:] == 0.0).all()
+
+
+@pytest.mark.parametrize("below", ["extend", "black"])
+def test_rows_without_sky_are_shown_too(below):
+    here = scene(below)
+
+    def evaluate(zenith, azimuth, footprint):
+        assert zenith.size
+        if azimuth.size != RING:
+            assert np.median(footprint) == pytest.approx(0.01)
+        return here.evaluate(zenith, azimuth, footprint)
+
+    azimuth, footprint = np.linspace(0.0, 6.0, 8)[None], np.full((1, 1), 0.01)
+    zenith = np.linspace(2.0, 3.0, 5)[:, None]
+    seen = without_ground(here, evaluate)(zenith, azimuth, footprint)
+    assert seen.shape == (5, 8, 3)
+    assert (seen > 0.0).all() if below == "extend" else (seen == 0.0).all()
 
 
 def test_extended_light_joins_the_horizon_and_is_within_its_range():
