@@ -29,6 +29,7 @@ def test_the_examples_run_in_their_order_and_write_their_files(tmp_path):
     assert done.stdout.endswith("time sunset: needs day\n")
     assert sorted(path.name for path in folder.iterdir() if path.is_file()) == [
         "chart.exr",
+        "cross.exr",
         "dome.exr",
         "dusk.exr",
         "dusk.png",

@@ -137,6 +137,7 @@ def convert(
         "white_luminance_cd_m2": after.white_luminance,
         "pixel": pixel,
         "compression": compression,
+        **({"mips": True} if mips else {}),
     }
     attributes = converted_attributes(before, after, encoding)
     specs = [

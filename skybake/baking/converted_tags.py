@@ -72,6 +72,8 @@ def _recipe(before: Environment, after: Environment, encoding: Mapping[str, Any]
     layout = before.projection.recipe()
     # Of another projection some keys have no meaning.
     others = {key: value for key, value in was.items() if key not in _layout_keys(before)}
+    if others.get("sun_disc") == "separate":
+        others["sun_disc"] = "include"
     now = {
         **others,
         **after.projection.recipe(),
@@ -92,4 +94,4 @@ def _recipe(before: Environment, after: Environment, encoding: Mapping[str, Any]
 
 def _layout_keys(environment: Environment) -> set[str]:
     keys = set(environment.projection.recipe())
-    return keys | {"equirect_rows", "cube_layout", "cube_space", "face_names"}
+    return keys | {*("equirect_rows", "cube_layout", "cube_space", "face_names"), "mips", "layers"}

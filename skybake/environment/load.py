@@ -39,7 +39,8 @@ def load_environment(
     ----------
     path : Path or str
         An EXR or Radiance picture, ours or another, or one of integers; of a cubemap in six
-        files any of them, or their name with ``{face}`` in place of the faces'.
+        files any of them, or their name with ``{face}`` in place of the faces'. A sun that is a
+        part of its own in a file of ours is added.
     projection : Projection or str, optional
         In which the map is, of any size, or its name; by default what its metadata or else its
         shape say.
@@ -74,7 +75,10 @@ def load_environment(
     known = find_colour_space(space) if isinstance(space, str) else space
     if known is None and has_space(attributes):
         known = file_space(files[0], attributes)
-    pixels = tuple(np.concatenate(list(image.bands())) for image in images)
+    pixels = tuple(
+        _with_sun(file, np.concatenate(list(image.bands())), image.attributes)
+        for file, image in zip(files, images, strict=True)
+    )
     return Environment(
         pixels,
         laid_out,
@@ -84,6 +88,15 @@ def load_environment(
         attributes,
         tuple(_warnings(files, images, pixels, known)),
     )
+
+
+def _with_sun(path: Path, pixels: Pixels, attributes: Mapping[str, Any]) -> Pixels:
+    """Add the disc that a file of ours holds in a part of its own."""
+    shown = file_recipe(attributes).get("map")
+    if not isinstance(shown, dict) or shown.get("sun_disc") != "separate":
+        return pixels
+    total: Pixels = pixels + np.concatenate(list(ImageFile(path, part="sun").bands()))
+    return total
 
 
 def _files(path: Path, image: ImageFile | None, given: Projection | str | None) -> tuple[Path, ...]:

@@ -33,6 +33,8 @@ class ImageFile:
         Any image of half or float pixels that OpenImageIO reads.
     takes_integers : bool, optional
         Also read pixels of 8 or 16 bits, which are taken as encoded for sRGB.
+    part : str, optional
+        Name of a part of an OpenEXR file; by default the first one.
 
     Attributes
     ----------
@@ -47,12 +49,16 @@ class ImageFile:
     Raises
     ------
     InputError
-        If the file is missing, damaged, of integers, or without R, G, B.
+        If the file is missing, damaged, of integers, or without R, G, B, or has no such part.
     """
 
-    def __init__(self, path: Path, *, takes_integers: bool = False) -> None:
+    def __init__(
+        self, path: Path, *, takes_integers: bool = False, part: str | None = None
+    ) -> None:
         self._path = path
         self._source = open_image(path)
+        if part is not None:
+            _seek_part(path, self._source, part)
         spec = self._source.spec()
         names = [name.upper() for name in spec.channelnames]
         self.is_integer = spec.format.basetype in {OpenImageIO.UINT8, OpenImageIO.UINT16}
@@ -144,6 +150,15 @@ def read_attributes(path: Path) -> dict[str, Any]:
         raise InputError(f"{path}: format must match the suffix, got {source.format_name()}")
     source.close()
     return attributes_of(path, source)
+
+
+def _seek_part(path: Path, source: OpenImageIO.ImageInput, part: str) -> None:
+    number = 0
+    while source.seek_subimage(number, 0):
+        if source.spec().get_string_attribute("oiio:subimagename") == part:
+            return
+        number += 1
+    raise InputError(f"{path}: parts must include {part}, got {number} others")
 
 
 def _linear(codes: Pixels) -> Pixels:

@@ -22,7 +22,7 @@ RENDERERS = (
         title="Blender: Environment Texture of a World",
         maps={"equirect": EITHER},
         axes=TargetAxes(east="+X", north="+Y", up="+Z"),
-        verified="Blender 5.0.1: cameras see the directions that a map encodes",
+        verified="Blender 5.0.1: directions of a map, and level and shadow of a lit scene",
         rotation=WEST,
         reasons={
             "maps": TargetReason(
@@ -65,7 +65,7 @@ RENDERERS = (
         title="Mitsuba: emitter envmap",
         maps={"equirect": EITHER},
         axes=GRAPHICS,
-        verified="Mitsuba 3.9.1: rays see the directions that a map encodes",
+        verified="Mitsuba 3.9.1: directions of a map, and level and shadow of a lit scene",
         equirect_rows="poles",
         reasons={
             "maps": TargetReason(
@@ -108,7 +108,7 @@ RENDERERS = (
         title="OpenEXR: programs that follow its envmap attribute, as exrenvmap",
         maps={"equirect": (".exr",), "cubemap": (".exr",)},
         axes=GRAPHICS,
-        verified="exrenvmap of OpenEXR 3.1: it makes the cube of the equirect map",
+        verified="exrenvmap 3.1.5: directions of maps",
         cube_layout="exr",
         equirect_rows="poles",
         reasons={

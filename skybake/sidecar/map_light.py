@@ -12,9 +12,7 @@ from skybake.constants import ASTRONOMICAL_UNIT
 from skybake.image.light import Light, Triple, light_of_scene
 from skybake.image.meter import scene_ev
 from skybake.image.scene import Scene
-from skybake.image.settings import Lighting
-from skybake.image.target import find_target
-from skybake.image.target_sun import target_sun_direction
+from skybake.image.settings import Lighting, MapSettings
 from skybake.optics.spectrum import star_at
 from skybake.preset import Planet
 
@@ -102,19 +100,19 @@ def map_light(scene: Scene, light: Light | None = None) -> MapLight:
         Its light, if that is known.
     """
     settings, target = scene.settings, scene.settings.encoding.target
-    projection = settings.view.projection.name
+    turn, sun_direction = (0.0, None) if target is None else _in_target(settings, target)
     normal, _ = scene.sun_xyz()
     star = star_at(scene.planet.star, settings.lighting.sun_distance)
     return MapLight(
         **vars(light_of_scene(scene) if light is None else light),
         preset=scene.planet.name,
-        projection=projection,
+        projection=settings.view.projection.name,
         colorspace=settings.encoding.colorspace,
         white_luminance=settings.encoding.white_luminance,
         rotation=settings.view.rotation,
         target=target,
-        target_turn=0.0 if target is None else find_target(target).turn(projection),
-        target_sun_direction=None if target is None else target_sun_direction(settings, target),
+        target_turn=turn,
+        target_sun_direction=sun_direction,
         sun_disc=settings.lighting.sun_disc,
         sun_azimuth=settings.lighting.sun_azimuth,
         sun_elevation=settings.lighting.sun_elevation,
@@ -135,6 +133,15 @@ def disc_diameter(planet: Planet, lighting: Lighting) -> float:
     """Angular diameter of the sun, or of the size that its disc is to be drawn in. [rad]"""
     star = star_at(planet.star, lighting.sun_distance)
     return lighting.sun_size or 2.0 * star.angular_radius
+
+
+def _in_target(settings: MapSettings, name: str) -> tuple[float, Triple]:
+    """Return how far a map is turned for a program, and where the sun is in it."""
+    from skybake.image.target import find_target
+    from skybake.image.target_sun import target_sun_direction
+
+    turn = find_target(name).turn(settings.view.projection.name)
+    return turn, target_sun_direction(settings, name)
 
 
 def _colour(scene: Scene, xyz: np.ndarray) -> Triple:

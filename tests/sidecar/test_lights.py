@@ -240,6 +240,22 @@ def test_files_of_lights_find_the_map_from_their_own_folder(tmp_path):
     assert files == [f"../sky_{face}.exr" for face in ("px", "nx", "py", "ny", "pz", "nz")]
 
 
+def test_a_file_of_lights_that_is_named_twice_is_written_once(tmp_path):
+    name = tmp_path / "a.json"
+    baked = bake("earth", tmp_path / "a.exr", map_settings(size=64), lights=[name, str(name)])
+    assert baked.light_files == (name,)
+    assert json.loads(name.read_text())["map"]["files"] == ["a.exr"]
+
+
+def test_lights_and_map_appear_together_or_not_at_all(small_disk):
+    full = small_disk / "filler"
+    full.write_bytes(bytes(60 * 1024))
+    settings = map_settings(size=16)
+    with pytest.raises(OutputError, match=r"a\.json: must be writable, got No space"):
+        bake("earth", small_disk / "a.exr", settings, lights=[small_disk / "a.json"])
+    assert list(small_disk.iterdir()) == [full]
+
+
 @pytest.mark.parametrize(
     ("name", "projection", "fault", "reason"),
     [
