@@ -28,5 +28,7 @@ def empty_field() -> CloudField:
         noise=np.zeros((1, 1, 1), np.int8),
         clearance=np.ones((1, 1, 1), np.float32),
         block=np.ones(3),
-        steepness=1.0,
+        near_clearance=np.zeros((1, 1, 1), np.uint8),
+        near_unit=1.0,
+        near_blur=0.0,
     )

@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from skybake.cloud_fields.clearance import block_clearance, blocks_of
 from skybake.cloud_fields.field import SURFACE, CloudField
-from skybake.cloud_fields.surface import STEP, surface_extinction
+from skybake.cloud_fields.near_clearance import with_near_clearance
+from skybake.cloud_fields.surface import STEP, surface_detail, surface_extinction
 from skybake.jit.kernel import kernel
 from skybake.jit.workers import ALL_CPUS
 
@@ -23,7 +24,7 @@ _BLURS = 7
 # Prime, so that columns meet nodes and noise at every phase.
 _COLUMNS = 139
 _FEW_COLUMNS = 67
-_NODES_PER_BLOCK = (3, 6, 6)
+_NODES_PER_BLOCK = (2, 4, 4)
 _TRIALS = 12
 _CLOSE = 5e-4
 
@@ -85,7 +86,7 @@ def fitted_field(
         shift=np.full(_BLURS, offset),
     )
     field = field._replace(shift=_mean_keeping_shifts(field))
-    return _with_clearance(field)
+    return with_near_clearance(_with_clearance(field))
 
 
 def _root(cover_at: Callable[[float], float], cover: float, farthest: float) -> float:
@@ -138,7 +139,9 @@ def _unfitted(surface: Surface) -> CloudField:
         noise=surface.noise,
         clearance=np.zeros((1, 1, 1), np.float32),
         block=np.ones(3),
-        steepness=1.0,
+        near_clearance=np.zeros((1, 1, 1), np.uint8),
+        near_unit=1.0,
+        near_blur=0.0,
     )
 
 
@@ -220,8 +223,6 @@ def _with_clearance(field: CloudField) -> CloudField:
     # Between these blurs the reach bends; a step of the noise covers what it may differ by.
     between = float(np.abs(np.diff(noise)).max(initial=0.0))
     reach = float(reaches.max()) + between
-    nearest = float(reaches.min()) - between + float(field.shift.min())
-    steepness = _steepness(field.distance, field.spacing, nearest / STEP)
     cloudy = field.distance < (reach + float(field.shift.max())) / STEP
     for axis in range(3):
         turned = np.roll(cloudy, -1, axis)
@@ -231,31 +232,7 @@ def _with_clearance(field: CloudField) -> CloudField:
     heights = field.base + np.arange(1, len(cloudy) + 1) * field.spacing[0]
     cloudy &= (heights > bottom)[:, None, None]
     mask, block = blocks_of(cloudy, field.spacing, _NODES_PER_BLOCK)
-    return field._replace(clearance=block_clearance(mask, block), block=block, steepness=steepness)
-
-
-@kernel
-def _steepness(distance, spacing, nearest):
-    """Largest gradient where trilinear values are above `nearest`, at least 1."""
-    levels, rows, columns = distance.shape
-    dz, dy, dx = spacing[0] / STEP, spacing[1] / STEP, spacing[2] / STEP
-    largest = 1.0
-    for k in range(levels - 1):
-        for j in range(rows):
-            north = j + 1 if j + 1 < rows else 0
-            for i in range(columns):
-                east = i + 1 if i + 1 < columns else 0
-                a, b = float(distance[k, j, i]), float(distance[k, j, east])
-                c, d = float(distance[k, north, i]), float(distance[k, north, east])
-                e, f = float(distance[k + 1, j, i]), float(distance[k + 1, j, east])
-                g, h = float(distance[k + 1, north, i]), float(distance[k + 1, north, east])
-                if max(a, b, c, d, e, f, g, h) <= nearest:
-                    continue
-                x = max(abs(b - a), abs(d - c), abs(f - e), abs(h - g)) / dx
-                y = max(abs(c - a), abs(d - b), abs(g - e), abs(h - f)) / dy
-                z = max(abs(e - a), abs(f - b), abs(g - c), abs(h - d)) / dz
-                largest = max(largest, x * x + y * y + z * z)
-    return math.sqrt(largest)
+    return field._replace(clearance=block_clearance(mask, block), block=block)
 
 
 @kernel
@@ -264,6 +241,7 @@ def _measure_columns(field, blur, depths, first, last):
     count = depths.shape[0]
     levels = field.distance.shape[0] - 1
     dz = field.spacing[0]
+    detail = surface_detail(field, blur)
     for j in range(first, last):
         y = (j + 0.5) / count * field.period[1]
         for i in range(count):
@@ -271,5 +249,5 @@ def _measure_columns(field, blur, depths, first, last):
             total = 0.0
             for k in range(levels):
                 altitude = field.base + (k + 0.5) * dz
-                total += surface_extinction(field, x, y, altitude, blur)
+                total += surface_extinction(field, x, y, altitude, detail)
             depths[j, i] = total * dz

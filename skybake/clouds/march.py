@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.cloud_fields.chart import tile_place
-from skybake.cloud_fields.field import clearance_at, extinction_at
+from skybake.cloud_fields.field import detail_at, detailed_clearance, detailed_extinction
 from skybake.clouds.harmonics import fill_harmonics
 from skybake.clouds.light import fill_corners, fill_diffuse, sun_depth, sun_share
 from skybake.clouds.particles import DEEPEST, TERMS
@@ -19,8 +19,14 @@ from skybake.optics.medium import Array
 FARTHEST = 600.0
 """Length of a ray within a layer, beyond which it is not followed. [km]"""
 
-OPAQUE = 0.004
+OPAQUE = 0.01
 """Transmittance below which nothing behind is seen."""
+
+GROWTH = 0.0
+"""By how much longer steps become, relative to the first, as less light comes from them."""
+
+DARK = 7.0
+"""Optical depth toward the sun, without forward peaks, beyond which its rest does not matter."""
 
 THINNEST = 0.02
 """Extinction below which there is no cloud. [km⁻¹]"""
@@ -144,21 +150,23 @@ def fill_march(
             x, y = tile_place(field, radius, px, py, pz)
             blur = middle * marching.pixel
             shortest = marching.shortest + blur
-            clear = clearance_at(field, x, y, h, blur)
+            detail = detail_at(field, blur)
+            clear = detailed_clearance(field, x, y, h, blur, detail)
             if clear > 0.5 * shortest:
                 at = max(middle + clear, at + shortest)
                 step = shortest
                 continue
-            extinction = extinction_at(field, x, y, h, blur)
+            extinction = detailed_extinction(field, x, y, h, detail)
             if extinction < THINNEST:
                 at += step
                 step = shortest
                 continue
             scaled = extinction * keep
-            if scaled * step > 1.6 * marching.depth and step > 1.01 * shortest:
-                step = max(marching.depth / scaled, shortest)
+            longest = (1.0 + GROWTH * (1.0 - passes)) * marching.depth / scaled
+            if step > 1.6 * longest and step > 1.01 * shortest:
+                step = max(longest, shortest)
                 continue
-            toward_sun = _depth_to_sun(field, light, marching, place, x, y, h, blur, scratch)
+            toward_sun = _depth_to_sun(field, light, marching, place, x, y, h, detail, scratch)
             fill_diffuse(
                 light,
                 place,
@@ -178,9 +186,12 @@ def fill_march(
             depth += extinction * step
             at += step
             if passes < OPAQUE:
+                # What is not followed is as bright as what is.
+                for c in range(channels):
+                    seen[n, c] /= 1.0 - passes
                 passes = 0.0
                 break
-            step = min(max(marching.depth / scaled, shortest), 2.0 * step)
+            step = min(max(longest, shortest), 2.0 * step)
             step = min(step, max(marching.longest, shortest))
         through[n, 0] = passes
         through[n, 1] = math.exp(-depth) if passes > 0.0 else 0.0
@@ -188,29 +199,25 @@ def fill_march(
 
 
 @kernel
-def _depth_to_sun(field, light, marching, place, x, y, h, blur, scratch):
+def _depth_to_sun(field, light, marching, place, x, y, h, detail, scratch):
     """Optical depth toward the sun without forward peaks; leaves the point's own corners."""
-    near = 0.0
+    corner, weight = scratch.corner, scratch.weight
     if marching.taps == 0:
-        fill_corners(light, x, y, h, scratch.corner, scratch.weight)
-        return sun_depth(light, place, scratch.corner, scratch.weight)
+        fill_corners(light, x, y, h, corner, weight)
+        return sun_depth(light, place, corner, weight)
     toward = scratch.local[1]
-    for q in range(marching.taps):
-        s = marching.reach * (q + 0.5) / marching.taps
-        near += extinction_at(field, x + s * toward[0], y + s * toward[1], h + s * toward[2], blur)
-    near *= marching.reach / marching.taps * (1.0 - light.fraction)
+    east, north, up = toward[0], toward[1], toward[2]
     s = marching.reach
-    fill_corners(
-        light,
-        x + s * toward[0],
-        y + s * toward[1],
-        h + s * toward[2],
-        scratch.corner,
-        scratch.weight,
-    )
-    near += sun_depth(light, place, scratch.corner, scratch.weight)
-    fill_corners(light, x, y, h, scratch.corner, scratch.weight)
-    return near
+    fill_corners(light, x + s * east, y + s * north, h + s * up, corner, weight)
+    depth = sun_depth(light, place, corner, weight)
+    if depth < DARK:
+        near = 0.0
+        for q in range(marching.taps):
+            s = marching.reach * (q + 0.5) / marching.taps
+            near += detailed_extinction(field, x + s * east, y + s * north, h + s * up, detail)
+        depth += near * marching.reach / marching.taps * (1.0 - light.fraction)
+    fill_corners(light, x, y, h, corner, weight)
+    return depth
 
 
 @kernel
