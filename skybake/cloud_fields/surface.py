@@ -89,23 +89,35 @@ def _density(field, distance, x, y, altitude, detail):
     if below >= beyond + AT_BASE * left:
         return 0.0
     moved = 0.0
-    if distance + left > -beyond or below > -beyond - AT_BASE * left:
-        if coarse > 0.0:
-            moved = coarse * _noise(field, 0, x, y, altitude)
-            left -= coarse
-            if distance - moved - left >= beyond:
-                return 0.0
-        # Coarser bulges carry the finer ones along, which hides the lattice of both.
-        if middle > 0.0:
-            swirl = _SWIRL * moved
-            moved += middle * _noise(field, 1, x + swirl, y - swirl, altitude + 0.5 * swirl)
-            if distance - moved - fine >= beyond:
-                return 0.0
-        if fine > 0.0:
-            swirl = _SWIRL * moved
-            moved += fine * _noise(field, 2, x + swirl, y - swirl, altitude + 0.5 * swirl)
+    if coarse > 0.0:
+        if _is_inside(distance, below, left, beyond):
+            return 1.0
+        moved = coarse * _noise(field, 0, x, y, altitude)
+        left -= coarse
+        if distance - moved - left >= beyond:
+            return 0.0
+    # Coarser bulges carry the finer ones along, which hides the lattice of both.
+    if middle > 0.0:
+        if _is_inside(distance - moved, below - AT_BASE * moved, left, beyond):
+            return 1.0
+        swirl = _SWIRL * moved
+        moved += middle * _noise(field, 1, x + swirl, y - swirl, altitude + 0.5 * swirl)
+        left -= middle
+        if distance - moved - left >= beyond:
+            return 0.0
+    if fine > 0.0:
+        if _is_inside(distance - moved, below - AT_BASE * moved, left, beyond):
+            return 1.0
+        swirl = _SWIRL * moved
+        moved += fine * _noise(field, 2, x + swirl, y - swirl, altitude + 0.5 * swirl)
     distance = max(distance - moved, below - AT_BASE * moved)
     return min(0.5 - distance / width, 1.0)
+
+
+@kernel
+def _is_inside(distance, below, left, beyond):
+    """Whether no displacement that is left can bring a point out of the cloud it is in."""
+    return distance + left <= -beyond and below + AT_BASE * left <= -beyond
 
 
 @kernel

@@ -10,12 +10,12 @@ import numpy.typing as npt
 
 from skybake.clouds.harmonics import degrees, harmonics_of
 from skybake.clouds.merging import merge_levels, merge_pairs, spread_pairs
+from skybake.clouds.mixing import Mixing
 from skybake.clouds.ordinates import Sweep, sweep
 from skybake.clouds.quadrature import Quadrature
 from skybake.jit.arguments import Flat, flatten
 from skybake.jit.workers import Workers
 from skybake.optics.medium import Array
-from skybake.scattering.anderson import Anderson
 
 Floats = npt.NDArray[np.float32]
 
@@ -227,16 +227,14 @@ class _Passes:
 
         Without a tolerance all passes are plain ones.
         """
-        anderson = Anderson(1)
-        shape = state.shape
+        mixing = Mixing(state.size) if tolerance > 0.0 else None
         image = np.empty_like(state)
         up = down = 0.0
         for number in range(1, most + 1):
             up, down = self._advance(state, image)
             change = _mean_change(state, image, self._cloudy)
-            if change > tolerance > 0.0 and number < most:
-                old, new = (each.reshape(1, -1).copy() for each in (state, image))
-                state[...] = anderson.step(old, new).reshape(shape)
+            if mixing and change > tolerance and number < most:
+                mixing.step(state.reshape(-1), image.reshape(-1))
                 continue
             state[...] = image
             if change <= tolerance:

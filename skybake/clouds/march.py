@@ -22,8 +22,14 @@ FARTHEST = 600.0
 OPAQUE = 0.01
 """Transmittance below which nothing behind is seen."""
 
-GROWTH = 0.0
-"""By how much longer steps become, relative to the first, as less light comes from them."""
+BRIGHT = 0.4
+"""Share of a ray's light that is still to come above which each step looks light up."""
+
+SHARED = 0.08
+"""Share of a ray's light whose steps, thereafter, have one look between them."""
+
+SIMILAR = 1.02
+"""Ratio of blurs that are not told apart."""
 
 DARK = 7.0
 """Optical depth toward the sun, without forward peaks, beyond which its rest does not matter."""
@@ -65,7 +71,7 @@ class MarchScratch(NamedTuple):
     harmonic: Array
     toward: npt.NDArray[np.float32]
     moments: npt.NDArray[np.float32]
-    diffuse: Array
+    source: Array
     truncated: Array
     peak: Array
     local: Array
@@ -80,7 +86,7 @@ def allocate_march(channels: int, order: int) -> MarchScratch:
         harmonic=np.empty(harmonics),
         toward=np.empty(harmonics, np.float32),
         moments=np.empty(channels * harmonics, np.float32),
-        diffuse=np.empty(channels),
+        source=np.zeros(channels),
         truncated=np.empty(channels),
         peak=np.empty((channels, TERMS)),
         local=np.empty((2, 3)),
@@ -137,7 +143,9 @@ def fill_march(
             continue
         place = _look(light, radius, altitude, directions[n], sun, begin, scratch)
         passes, depth = 1.0, 0.0
-        weighted = total = 0.0
+        weighted = total = due = 0.0
+        share, is_new = 1.0, True
+        known, detail = begin * marching.pixel, detail_at(field, begin * marching.pixel)
         at = begin
         shortest = marching.shortest + at * marching.pixel
         step = shortest
@@ -150,9 +158,12 @@ def fill_march(
             x, y = tile_place(field, radius, px, py, pz)
             blur = middle * marching.pixel
             shortest = marching.shortest + blur
-            detail = detail_at(field, blur)
+            if blur > SIMILAR * known:
+                known, detail = blur, detail_at(field, blur)
             clear = detailed_clearance(field, x, y, h, blur, detail)
             if clear > 0.5 * shortest:
+                _add(scratch.source, due, seen[n])
+                due, is_new = 0.0, True
                 at = max(middle + clear, at + shortest)
                 step = shortest
                 continue
@@ -162,24 +173,20 @@ def fill_march(
                 step = shortest
                 continue
             scaled = extinction * keep
-            longest = (1.0 + GROWTH * (1.0 - passes)) * marching.depth / scaled
-            if step > 1.6 * longest and step > 1.01 * shortest:
-                step = max(longest, shortest)
+            if scaled * step > 1.6 * marching.depth and step > 1.01 * shortest:
+                step = max(marching.depth / scaled, shortest)
                 continue
-            toward_sun = _depth_to_sun(field, light, marching, place, x, y, h, detail, scratch)
-            fill_diffuse(
-                light,
-                place,
-                scratch.corner,
-                scratch.weight,
-                scratch.toward,
-                scratch.moments,
-                scratch.diffuse,
-            )
             stops = 1.0 - math.exp(-scaled * step)
             weight = passes * stops
-            to_eye = depth + 0.5 * extinction * step
-            _add_light(light, place, h, toward_sun, to_eye, weight, scratch, seen[n])
+            if is_new or passes > BRIGHT or due >= SHARED:
+                # Light between two looks is the mean of both.
+                _add(scratch.source, 0.5 * due, seen[n])
+                to_eye = depth + 0.5 * extinction * step
+                _look_up(field, light, marching, place, x, y, h, detail, to_eye, scratch)
+                _add(scratch.source, 0.5 * due + weight, seen[n])
+                due, is_new = 0.0, False
+            else:
+                due += weight
             weighted += weight * middle
             total += weight
             passes *= 1.0 - stops
@@ -187,12 +194,13 @@ def fill_march(
             at += step
             if passes < OPAQUE:
                 # What is not followed is as bright as what is.
-                for c in range(channels):
-                    seen[n, c] /= 1.0 - passes
+                share = 1.0 / (1.0 - passes)
                 passes = 0.0
                 break
-            step = min(max(longest, shortest), 2.0 * step)
+            step = min(max(marching.depth / scaled, shortest), 2.0 * step)
             step = min(step, max(marching.longest, shortest))
+        for c in range(channels):
+            seen[n, c] = share * (seen[n, c] + due * scratch.source[c])
         through[n, 0] = passes
         through[n, 1] = math.exp(-depth) if passes > 0.0 else 0.0
         through[n, 2] = weighted / total if total > 0.0 else 0.0
@@ -221,23 +229,39 @@ def _depth_to_sun(field, light, marching, place, x, y, h, detail, scratch):
 
 
 @kernel
-def _add_light(light, place, h, toward_sun, to_eye, weight, scratch, out):
-    """Add what a step sends to the eye: of the sun, and of the diffuse light in `scratch`.
+def _look_up(field, light, marching, place, x, y, h, detail, to_eye, scratch):
+    """Write what a point sends to the eye, of the sun and of diffuse light, by its opacity.
 
-    `to_eye` is the depth of all particles, those of peaks included, and `toward_sun` without them.
+    `to_eye` is the depth of all particles, those of peaks included.
     """
+    toward_sun = _depth_to_sun(field, light, marching, place, x, y, h, detail, scratch)
+    fill_diffuse(
+        light,
+        place,
+        scratch.corner,
+        scratch.weight,
+        scratch.toward,
+        scratch.moments,
+        scratch.source,
+    )
     keep = 1.0 - light.fraction
     to_sun = toward_sun / keep
     sharp = math.exp(-light.fraction * (to_sun + to_eye)) / keep
     beam = math.exp(-toward_sun)
     series = min(to_sun, DEEPEST)
     fz = (h - light.base) / light.spacing[0] - 0.5
-    for c in range(out.size):
+    for c in range(scratch.source.size):
         peak = scratch.peak[c, TERMS - 1]
         for q in range(TERMS - 2, -1, -1):
             peak = peak * series + scratch.peak[c, q]
         lit = _irradiance(light, place, fz, c) * beam
-        out[c] += weight * (lit * (scratch.truncated[c] + sharp * peak) + scratch.diffuse[c])
+        scratch.source[c] += lit * (scratch.truncated[c] + sharp * peak)
+
+
+@kernel
+def _add(source, weight, out):
+    for c in range(source.size):
+        out[c] += weight * source[c]
 
 
 @kernel
