@@ -15,6 +15,7 @@ from skybake.cloud_fields.deck import ALTOCUMULUS, STRATOCUMULUS, STRATUS, deck
 from skybake.cloud_fields.empty import empty_field
 from skybake.cloud_fields.field import CloudField
 from skybake.cloud_fields.kept import kept_field
+from skybake.cloud_fields.near_clearance import with_near_clearance
 from skybake.cloud_fields.tiles import read_tile, tile_field
 from skybake.preset.clouds_model import CloudLayer, Tile
 
@@ -84,4 +85,7 @@ def _at_time(field: CloudField, layer: CloudLayer, time_s: float) -> CloudField:
     # Of the phase only the fraction counts, which is exact for whole periods.
     phase = math.fmod(time_s, EVOLUTION) / EVOLUTION
     displacement[:, 8] = np.mod(displacement[:, 8] - cycles * phase, 1.0)
-    return field._replace(origin=np.mod(origin, field.period), displacement=displacement)
+    moved = field._replace(origin=np.mod(origin, field.period), displacement=displacement)
+    if np.array_equal(displacement, field.displacement):
+        return moved
+    return with_near_clearance(moved)

@@ -121,7 +121,7 @@ def clearance_at(field, x, y, altitude, blur):
 
 @kernel
 def detail_at(field, blur):
-    """What `detailed_extinction` and `detailed_clearance` need to know for a blur. [km]"""
+    """Return what `detailed_extinction` and `detailed_clearance` need to know for a blur. [km]"""
     if field.kind == SURFACE:
         return surface_detail(field, blur)
     return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -129,7 +129,7 @@ def detail_at(field, blur):
 
 @kernel
 def detailed_extinction(field, x, y, altitude, detail):
-    """`extinction_at` of several points whose blur is the same."""
+    """Extinction at one of several points whose blur is the same, see `extinction_at`. [km⁻¹]"""
     if field.kind == SURFACE:
         return surface_extinction(field, x, y, altitude, detail)
     if field.kind == CONSTANT:
@@ -139,7 +139,7 @@ def detailed_extinction(field, x, y, altitude, detail):
 
 @kernel
 def detailed_clearance(field, x, y, altitude, blur, detail):
-    """`clearance_at`, with the detail of that blur."""
+    """Clearance with the detail of a blur, see `clearance_at`. [km]"""
     if field.kind == SURFACE:
         return surface_clearance(field, x, y, altitude, blur, detail)
     return voxel_clearance(field, x, y, altitude)

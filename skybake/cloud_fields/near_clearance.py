@@ -7,6 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from skybake.cloud_fields.cell_distances import cell_distances
 from skybake.cloud_fields.field import CloudField
 from skybake.cloud_fields.noise import BILLOW_SIZE
 from skybake.cloud_fields.surface import AT_BASE, STEP
@@ -37,12 +38,12 @@ def with_near_clearance(field: CloudField) -> CloudField:
     ALL_CPUS.run_rows(levels - 1, mark, chunk=2)
     unit = float(field.spacing.min()) / _UNITS
     return field._replace(
-        near_clearance=_distances(cells, field.spacing, unit), near_unit=unit, near_blur=blur
+        near_clearance=cell_distances(cells, field.spacing, unit), near_unit=unit, near_blur=blur
     )
 
 
 def _reach(field: CloudField, blur: float) -> tuple[float, float, float]:
-    """How far from the surface that is not displaced there may be cloud, apart from the coarsest noise.
+    """How far from the surface there may be cloud, without what the coarsest noise displaces.
 
     Returns
     -------
@@ -67,7 +68,8 @@ def _reach(field: CloudField, blur: float) -> tuple[float, float, float]:
 def _largest_nearby(field: CloudField) -> npt.NDArray[np.int8]:
     """Largest value of the coarsest noise around each voxel that a cell around it can hold."""
     row, (dz, dy, dx) = field.displacement[0], field.spacing
-    sides = abs(row[5]) * dz, abs(row[3]) * dx + abs(row[4]) * dy, abs(row[1]) * dx + abs(row[2]) * dy
+    wide, deep = (abs(row[q]) * dx + abs(row[q + 1]) * dy for q in (1, 3))
+    sides = abs(row[5]) * dz, deep, wide
     largest = field.noise
     for axis, side in enumerate(sides):
         half = math.ceil(0.5 * side * BILLOW_SIZE)
@@ -81,7 +83,7 @@ def _largest_nearby(field: CloudField) -> npt.NDArray[np.int8]:
 
 @kernel
 def _mark(field, nearby, blur, reach, most, least, cells, first, last):
-    """Write 1 for cells that may hold cloud, 0 for others, in planes from `first` to below `last`."""
+    """Write 1 for cells that may hold cloud and 0 for others, in planes `first` to below `last`."""
     _, rows, columns = field.distance.shape
     dz, dy, dx = field.spacing[0], field.spacing[1], field.spacing[2]
     row = field.displacement[0]
@@ -100,9 +102,8 @@ def _mark(field, nearby, blur, reach, most, least, cells, first, last):
             for i in range(columns):
                 east = i + 1 if i + 1 < columns else 0
                 low = field.distance[k, j, i]
-                for each in (k, k + 1):
-                    low = min(low, field.distance[each, j, i], field.distance[each, j, east])
-                    low = min(low, field.distance[each, north, i], field.distance[each, north, east])
+                for plane in (field.distance[k], field.distance[k + 1]):
+                    low = min(low, plane[j, i], plane[j, east], plane[north, i], plane[north, east])
                 distance = STEP * low - reach
                 if distance >= most:
                     cells[k, j, i] = 0
@@ -114,84 +115,3 @@ def _mark(field, nearby, blur, reach, most, least, cells, first, last):
                 noise = nearby[a, b, c] / 127.0
                 moved = noise * (most if noise > 0.0 else least)
                 cells[k, j, i] = distance < moved and upper > lowest
-
-
-def _distances(
-    cells: npt.NDArray[np.uint8], spacing: npt.NDArray[np.float64], unit: float
-) -> npt.NDArray[np.uint8]:
-    """Distance of each cell from the nearest that is marked, in units, rounded down."""
-    levels, rows, columns = cells.shape
-    dz, dy, dx = (float(each) for each in spacing)
-    farthest = 255.0 * unit
-    along = np.empty(cells.shape, np.float32)
-    flat = np.empty(cells.shape, np.float32)
-    out = np.empty(cells.shape, np.uint8)
-
-    def first(begin: int, end: int) -> None:
-        _along_x(cells, dx, farthest, along, begin, end)
-        _along_y(along, dy, farthest, flat, begin, end)
-
-    def then(begin: int, end: int) -> None:
-        _along_z(flat, dz, farthest, unit, along, out, begin, end)
-
-    ALL_CPUS.run_rows(levels, first, chunk=2)
-    ALL_CPUS.run_rows(rows, then, chunk=16)
-    return out
-
-
-@kernel
-def _along_x(cells, step, farthest, squared, first, last):
-    """Write the square of the distance within rows, which are periodic."""
-    _, rows, columns = cells.shape
-    for k in range(first, last):
-        for j in range(rows):
-            row = squared[k, j]
-            gap = farthest
-            for n in range(2 * columns):
-                i = n if n < columns else n - columns
-                row[i] = 0.0 if cells[k, j, i] else gap * gap
-                gap = 0.0 if cells[k, j, i] else min(gap + step, farthest)
-            gap = farthest
-            for n in range(2 * columns - 1, -1, -1):
-                i = n if n < columns else n - columns
-                row[i] = min(row[i], gap * gap)
-                gap = 0.0 if cells[k, j, i] else min(gap + step, farthest)
-
-
-@kernel
-def _along_y(squared, step, farthest, nearest, first, last):
-    """The same across rows, which are periodic."""
-    _, rows, columns = squared.shape
-    offsets = min(int(farthest / step) + 1, rows // 2)
-    for k in range(first, last):
-        for j in range(rows):
-            row = nearest[k, j]
-            for i in range(columns):
-                row[i] = squared[k, j, i]
-            for offset in range(1, offsets + 1):
-                gap = np.float32((offset - 1) * step * (offset - 1) * step)
-                low = squared[k, j - offset if j >= offset else j - offset + rows]
-                high = squared[k, j + offset if j + offset < rows else j + offset - rows]
-                for i in range(columns):
-                    row[i] = min(row[i], min(low[i], high[i]) + gap)
-
-
-@kernel
-def _along_z(squared, step, farthest, unit, nearest, out, first, last):
-    """The same across planes, and the distance in units."""
-    levels, _, columns = squared.shape
-    for j in range(first, last):
-        for k in range(levels):
-            row = nearest[k, j]
-            for i in range(columns):
-                row[i] = squared[k, j, i]
-            for other in range(levels):
-                apart = max(abs(other - k) - 1, 0) * step
-                if apart > farthest:
-                    continue
-                gap = np.float32(apart * apart)
-                values = squared[other, j]
-                for i in range(columns):
-                    row[i] = min(row[i], values[i] + gap)
-            for i in range(columns):
-                out[k, j, i] = min(int(math.sqrt(row[i]) / unit), 255)

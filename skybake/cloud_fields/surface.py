@@ -18,7 +18,12 @@ _FADES = 4.0
 AT_BASE = 0.2
 """Share of its displacement that the base of clouds has, which is flat."""
 
+_NOISES = 3
+"""Noises of a field at most."""
+
 _PERIODS = 4096.0
+"""Periods of a noise by which its coordinates are above 0 for sure."""
+
 _PER_STEP = 1.0 / 127.0
 
 _SWIRL = 0.6
@@ -27,7 +32,7 @@ _SWIRL = 0.6
 
 @kernel
 def surface_detail(field, blur):
-    """What blur leaves of a surface, and reciprocals of lengths, for a number of points.
+    """Return what blur leaves of a surface, and reciprocals of lengths, for a number of points.
 
     Returns
     -------
@@ -89,35 +94,22 @@ def _density(field, distance, x, y, altitude, detail):
     if below >= beyond + AT_BASE * left:
         return 0.0
     moved = 0.0
-    if coarse > 0.0:
-        if _is_inside(distance, below, left, beyond):
+    for q in range(_NOISES):
+        amplitude = coarse if q == 0 else middle if q == 1 else fine
+        if amplitude <= 0.0:
+            break
+        # Where nothing that is left can bring a point out of its cloud, none is looked up.
+        deep, high = moved - distance - left, AT_BASE * (moved - left) - below
+        if min(deep, high) >= beyond:
             return 1.0
-        moved = coarse * _noise(field, 0, x, y, altitude)
-        left -= coarse
+        # Coarser bulges carry the finer ones along, which hides the lattice of both.
+        swirl = _SWIRL * moved
+        moved += amplitude * _noise(field, q, x + swirl, y - swirl, altitude + 0.5 * swirl)
+        left -= amplitude
         if distance - moved - left >= beyond:
             return 0.0
-    # Coarser bulges carry the finer ones along, which hides the lattice of both.
-    if middle > 0.0:
-        if _is_inside(distance - moved, below - AT_BASE * moved, left, beyond):
-            return 1.0
-        swirl = _SWIRL * moved
-        moved += middle * _noise(field, 1, x + swirl, y - swirl, altitude + 0.5 * swirl)
-        left -= middle
-        if distance - moved - left >= beyond:
-            return 0.0
-    if fine > 0.0:
-        if _is_inside(distance - moved, below - AT_BASE * moved, left, beyond):
-            return 1.0
-        swirl = _SWIRL * moved
-        moved += fine * _noise(field, 2, x + swirl, y - swirl, altitude + 0.5 * swirl)
     distance = max(distance - moved, below - AT_BASE * moved)
     return min(0.5 - distance / width, 1.0)
-
-
-@kernel
-def _is_inside(distance, below, left, beyond):
-    """Whether no displacement that is left can bring a point out of the cloud it is in."""
-    return distance + left <= -beyond and below + AT_BASE * left <= -beyond
 
 
 @kernel
