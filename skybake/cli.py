@@ -30,7 +30,10 @@ _RENAMED_WITHIN = 10.0
 
 _ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
 
-_COMMANDS = ("cache", "clouds", "presets", "preview", "probe", "render", "sequence")
+_COMMANDS = (
+    *("cache", "chart", "clouds", "presets", "preview", "probe", "render", "sequence"),
+    "targets",
+)
 
 # Message of the RuntimeError where a thread gets no stack or is not allowed.
 _NO_THREAD = "can't start new thread"

@@ -114,7 +114,7 @@ class FileLight:
         light, seen = self._sum_over_sky(self.canvas, sun=None)
         if seen > _ALL * math.pi:
             # The disc is in the pixels, unless it was left out.
-            return light + self._direct() if self._disc() == "exclude" else light
+            return light + self._direct() if self._disc() in {"exclude", "separate"} else light
         part, _ = self._sum_over_sky(self.canvas, self._sun_direction())
         sky = self._figure("skybake:skyIlluminance")
         if sky is None or not part[1] > 0.0:

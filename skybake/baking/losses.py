@@ -17,9 +17,8 @@ HALF_MOST = 65504.0
 COARSE = 0.01
 """Relative error of a value beyond which it counts as lost."""
 
-# Halves below 2**-14 are multiples of 2**-24.
-_DIM = 2.0**-25 / COARSE
-_ZERO = 2.0**-25
+_SMALLEST = {"half": 2.0**-24, "rgb9e5": 2.0**-24, "r11g11b10": 2.0**-20}
+_NAMES = {"half": "half floats", "rgb9e5": "shared exponents", "r11g11b10": "small floats"}
 
 _WARNED_SHARE, _MOST_SHARE = 1e-3, 0.5
 
@@ -31,7 +30,12 @@ _RADIANCE = (
 
 
 class HalfLoss:
-    """Counts values that half floats hold badly, as they are written.
+    """Counts values that half floats, or smaller ones, hold badly, as they are written.
+
+    Parameters
+    ----------
+    pixel : str
+        Type of the values: half, or one of those of 32 bits for three colours.
 
     Attributes
     ----------
@@ -42,7 +46,11 @@ class HalfLoss:
         Of all magnitudes.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, pixel: str = "half") -> None:
+        self._name = _NAMES[pixel]
+        # Below their normal values all types have steps of one size.
+        self._zero = 0.5 * _SMALLEST[pixel]
+        self._dim = self._zero / COARSE
         self.lit = self.coarse = self.zero = 0
         self.largest = 0.0
 
@@ -51,9 +59,9 @@ class HalfLoss:
         magnitude = np.abs(rows)
         self.largest = max(self.largest, float(magnitude.max(initial=0.0)))
         self.lit += int(np.count_nonzero(magnitude))
-        dim = magnitude[magnitude < _DIM]
+        dim = magnitude[magnitude < self._dim]
         self.coarse += int(np.count_nonzero(dim))
-        self.zero += int(np.count_nonzero(dim[dim <= _ZERO]))
+        self.zero += int(np.count_nonzero(dim[dim <= self._zero]))
 
     def warning(self, path: Path) -> str | None:
         """Say what is lost of a file, or return None if that is little.
@@ -70,14 +78,14 @@ class HalfLoss:
         share = self.coarse / max(self.lit, 1)
         if share > _MOST_SHARE:
             raise OutputError(
-                f"{path}: half floats must hold most values within {COARSE:.0%}, got {share:.0%} "
+                f"{path}: {self._name} must hold most values within {COARSE:.0%}, got {share:.0%} "
                 f"beyond and {self.zero / self.lit:.0%} as 0; use float, or let 1.0 stand for less "
                 "light"
             )
         if share <= _WARNED_SHARE:
             return None
         return (
-            f"half floats hold the darkest values with errors above {COARSE:.0%}; use float, or "
+            f"{self._name} hold the darkest values with errors above {COARSE:.0%}; use float, or "
             "let 1.0 stand for less light"
         )
 

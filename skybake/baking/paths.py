@@ -10,8 +10,11 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
+from skybake.errors import InputError
+from skybake.formats.cube_file import is_cube_file
 from skybake.image.settings import Clouds, Encoding, Lighting, MapSettings
 from skybake.preset import Planet
+from skybake.projection import Cubemap, Projection
 
 PLAIN_LIGHTING, PLAIN_ENCODING, PLAIN_CLOUDS = Lighting(), Encoding(), Clouds()
 
@@ -20,7 +23,7 @@ LONGEST_CHANGES = 40
 """Longest value, and longest of all changes together, that is part of a name. [character]"""
 
 _SAFE = re.compile(r"[A-Za-z0-9_.-]+")
-_DISCS = {"include": "", "exclude": "nodisc", "only": "disc"}
+_DISCS = {"include": "", "exclude": "nodisc", "only": "disc", "separate": "separate"}
 
 
 def default_path(planet: Planet, settings: MapSettings) -> Path:
@@ -49,9 +52,19 @@ def default_path(planet: Planet, settings: MapSettings) -> Path:
         _scale(encoding),
         "clamped" if encoding.clamp_negative else "",
         *(_clouds(settings.clouds) if planet.clouds else ()),
+        encoding.target or "",
         view.projection.label,
     )
-    return Path(f"{'_'.join(filter(None, parts))}.exr")
+    return Path("_".join(filter(None, parts)) + usual_suffix(settings))
+
+
+def usual_suffix(settings: MapSettings) -> str:
+    """Suffix of a map's files, ``.exr`` unless its target takes another."""
+    if settings.encoding.target is None:
+        return ".exr"
+    from skybake.image.target import find_target
+
+    return find_target(settings.encoding.target).suffix(settings.view.projection.name)
 
 
 def world_name(planet: Planet) -> str:
@@ -100,14 +113,31 @@ def map_paths(target: Path, settings: MapSettings) -> tuple[Path, ...]:
     Raises
     ------
     InputError
-        If the file format cannot hold the projection's layout.
+        If the file format cannot hold the projection's layout, or the target takes no such files.
     """
     projection = settings.view.projection
+    if settings.encoding.target is not None:
+        from skybake.image.target import find_target
+
+        find_target(settings.encoding.target).check_suffix(projection.name, target.suffix)
     projection.check_file(target)
+    if is_cube_file(target):
+        _check_cube_file(target, projection)
+        return (target,)
     return tuple(
         target if canvas.face is None else face_path(target, canvas.face)
         for canvas in projection.canvases()
     )
+
+
+def _check_cube_file(target: Path, projection: Projection) -> None:
+    if not isinstance(projection, Cubemap) or projection.layout != "faces":
+        raise InputError(
+            f"{target}: must be of a cubemap in faces, all of which it holds, "
+            f"got {projection.label}"
+        )
+    if "{face}" in target.name:
+        raise InputError(f"{target}: name must have no {{face}}, since the file holds all faces")
 
 
 def face_path(target: Path, face: str) -> Path:

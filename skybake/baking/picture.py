@@ -60,7 +60,7 @@ def open_picture(
         If it cannot be written.
     """
     ev, white = picture_ev(scene, settings), scene_white(scene, settings)
-    shown = picture_projection(scene.settings.view.projection, settings.shot)
+    shown = picture_projection(scene.settings.view, settings.shot)
     show = stack.enter_context(
         open_preview(
             path,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Literal, cast
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from skybake.image.scene import Scene
 HALF_LARGEST = 60000.0
 HALF_SMALLEST = 2.0**-14
 
-PixelType = Literal["half", "float"]
+PixelType = Literal["half", "float", "rgb9e5", "r11g11b10"]
 
 
 def pixel_type(scene: Scene) -> PixelType:
@@ -51,11 +51,11 @@ def fitting_pixel(wanted: str, largest: float, smallest: float) -> PixelType:
 
     Parameters
     ----------
-    wanted : {"auto", "half", "float"}
+    wanted : str
         As of `skybake.image.settings.Encoding`.
     largest, smallest : float
         As of `value_range`.
     """
     if wanted != "auto":
-        return "half" if wanted == "half" else "float"
+        return cast(PixelType, wanted)
     return "half" if largest < HALF_LARGEST and smallest >= HALF_SMALLEST else "float"

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from skybake.baking.file_light import FileLight
 from skybake.colour.exposure import luminance_from_ev
-from skybake.colour.space import ColourSpace, colour_space_from_tags
 from skybake.colour.white_balance import chromaticity
+from skybake.environment.tags import file_space, file_white
 from skybake.errors import InputError
 from skybake.formats.preview import check_preview, write_preview
 from skybake.formats.reader import ImageFile
@@ -21,16 +18,10 @@ from skybake.image.picture_settings import PictureSettings
 from skybake.image.picture_texts import shot_text, white_balance_text
 from skybake.projection import Perspective
 from skybake.projection.lookup import Lookup
-from skybake.projection.of_file import file_canvas
+from skybake.projection.of_file import file_canvas, file_rotation
 
 MAX_WIDTH = 1024
 """Largest width of pictures; larger maps are reduced. [pixel]"""
-
-_CHROMATICITIES = 8
-
-# From darker than any sensor sees to brighter than the surface of any star.
-_DARKEST_WHITE = 1e-9
-_BRIGHTEST_WHITE = 1e15
 
 # A file that does not state its scale is shown as if 1.0 were the white of EV 15.
 UNKNOWN_WHITE = luminance_from_ev(15.0)
@@ -77,7 +68,8 @@ def preview_file(source: Path, path: Path, settings: PictureSettings | None = No
     check_preview(path)
     image = ImageFile(source)
     attributes = image.attributes
-    space, white_luminance = _scale(source, attributes)
+    space = file_space(source, attributes)
+    white_luminance = file_white(source, attributes) or UNKNOWN_WHITE
     lookup = _lookup(source, image, settings.shot)
     picture = Shrinking(image.width, image.height, MAX_WIDTH)
     for rows in image.bands():
@@ -127,34 +119,9 @@ def _lookup(source: Path, image: ImageFile, shot: Perspective | None) -> Lookup 
             f"{source}: shot: must be of a map whose layout is known, "
             f"got a picture of {image.width}x{image.height}"
         )
-    lookup = Lookup(canvas, shot)
+    lookup = Lookup(canvas, shot.on_map(file_rotation(image.attributes)))
     if not lookup.shows_something:
         raise InputError(
             f"{source}: shot: must look where the map shows something, got {shot_text(shot)}"
         )
     return lookup
-
-
-def _scale(source: Path, attributes: Mapping[str, Any]) -> tuple[ColourSpace, float]:
-    """Return the space of a file's pixels, and the luminance of 1."""
-    chromaticities = attributes.get("chromaticities")
-    if chromaticities is not None:
-        chromaticities = _numbers(f"{source}: chromaticities", chromaticities, _CHROMATICITIES)
-    name = attributes.get("colorInteropID")
-    space = colour_space_from_tags(str(source), None if name is None else str(name), chromaticities)
-    where = f"{source}: whiteLuminance"
-    (white,) = _numbers(where, attributes.get("whiteLuminance", UNKNOWN_WHITE), 1)
-    if not _DARKEST_WHITE <= white <= _BRIGHTEST_WHITE:
-        raise InputError(
-            f"{where}: must be from {_DARKEST_WHITE:g} to {_BRIGHTEST_WHITE:g} cd/m2, got {white:g}"
-        )
-    return space, white
-
-
-def _numbers(where: str, value: Any, count: int) -> tuple[float, ...]:
-    values = value if isinstance(value, tuple) else (value,)
-    is_right = len(values) == count and all(isinstance(one, int | float) for one in values)
-    if not is_right or not all(math.isfinite(one) for one in values):
-        kind = "a number" if count == 1 else f"{count} numbers"
-        raise InputError(f"{where}: must be {kind}, got {' '.join(repr(value).split())}")
-    return tuple(map(float, values))

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from skybake.baking.losses import HalfLoss, scene_warnings
 from skybake.baking.paths import default_path, map_paths
+from skybake.baking.pictures import Picture, open_pictures
 from skybake.baking.pixel_type import PixelType, fitting_pixel, value_range
+from skybake.errors import InputError
+from skybake.formats.cube_file import check_cube_encoding, is_cube_file
 from skybake.formats.preview import check_preview
-from skybake.formats.scanlines import Rows
 from skybake.formats.spec import Attribute, MapSpec
 from skybake.formats.whole_files import WholeFiles
-from skybake.formats.writer import MapWriter, check_map_path, open_maps
+from skybake.formats.writer import check_map_path
 from skybake.image.light import Light, attributes_from_light, light_of_scene
 from skybake.image.picture_settings import PictureSettings
 from skybake.image.raster import Raster
@@ -23,6 +26,8 @@ from skybake.image.scene import Scene
 from skybake.image.settings import MapSettings
 from skybake.jit.workers import Workers
 from skybake.preset import Planet, load_preset
+from skybake.sidecar.light_file import check_light_file, write_light_file
+from skybake.sidecar.map_light import MapLight, map_light
 
 BAND_ROWS = 128
 
@@ -51,6 +56,10 @@ class Baked(Light):
         Negative values that became 0 in a format without a sign.
     warnings : tuple of str
         What the files lose of the light, or why it may not be what was meant, a line each.
+    map_light : MapLight or None
+        All about the light that a renderer needs, if it was asked for.
+    light_files : tuple of Path
+        The files that tell it.
     """
 
     files: tuple[Path, ...]
@@ -61,6 +70,8 @@ class Baked(Light):
     preview_white: tuple[float, float] | None
     clamped: int
     warnings: tuple[str, ...] = ()
+    map_light: MapLight | None = None
+    light_files: tuple[Path, ...] = ()
 
 
 def bake(
@@ -71,6 +82,7 @@ def bake(
     preview: Path | str | None = None,
     picture: PictureSettings | None = None,
     attributes: Mapping[str, Attribute] | None = None,
+    lights: Sequence[Path | str] | None = None,
     progress: Progress | None = None,
     stage: Callable[[str], None] | None = None,
     notice: Callable[[str], None] | None = None,
@@ -82,8 +94,9 @@ def bake(
     preset : Planet, str or Path
         A loaded planet, a preset's name, or the path of a preset's file.
     output : Path or str, optional
-        ``.exr`` or ``.hdr``; default a name that describes it, in the current
-        folder. Six faces replace ``{face}`` in it, or add ``_px`` and so on.
+        ``.exr`` or ``.hdr``, of a cubemap also ``.ktx2`` or ``.dds``, which hold all faces;
+        default a name that describes it, in the current folder. Six files replace ``{face}`` in
+        it, or add ``_px`` and so on.
     settings : MapSettings, optional
         Sun, observer, map, colour and pixels.
     preview : Path or str, optional
@@ -93,6 +106,10 @@ def bake(
     attributes : mapping of str to Attribute, optional
         What the files shall state besides their light and their recipe, such as
         ``{"skybake:time": "2026-06-21T04:00:00Z"}``.
+    lights : sequence of Path or str, optional
+        Also write sky and sun as lights of other programs: ``.json``, ``.usda``, or ``.py`` for
+        Blender. The sun shines there only if the map leaves its disc out. Without a name in it
+        only `Baked.map_light` is set.
     progress : callable, optional
         Called with the share of the pixels that is done, from 0 to 1.
     stage : callable, optional
@@ -114,7 +131,8 @@ def bake(
     planet = preset if isinstance(preset, Planet) else load_preset(preset)
     output = Path(output) if output else default_path(planet, settings)
     preview = None if preview is None else Path(preview)
-    check_targets(output, settings, preview)
+    light_files = None if lights is None else [Path(path) for path in lights]
+    check_targets(output, settings, preview, light_files or ())
     scene = Scene(planet, settings)
     if notice is not None and not scene.sky.is_solved:
         notice("solving for the light in this atmosphere, once")
@@ -124,12 +142,18 @@ def bake(
         preview=preview,
         picture=picture,
         attributes=attributes,
+        light_files=light_files,
         progress=progress,
         stage=stage,
     )
 
 
-def check_targets(output: Path, settings: MapSettings, preview: Path | None = None) -> None:
+def check_targets(
+    output: Path,
+    settings: MapSettings,
+    preview: Path | None = None,
+    light_files: Sequence[Path] = (),
+) -> None:
     """Raise the errors of a map's files that can be found before anything is computed.
 
     Raises
@@ -141,8 +165,28 @@ def check_targets(output: Path, settings: MapSettings, preview: Path | None = No
     """
     for path in map_paths(output, settings):
         check_map_path(path)
+        check_encoding(path, settings)
     if preview is not None:
         check_preview(preview)
+    for path in light_files:
+        check_light_file(path, settings.view.projection.name, map_paths(output, settings))
+
+
+def check_encoding(path: Path, settings: MapSettings) -> None:
+    """Refuse a type, a compression or smaller copies that the format of a file does not have."""
+    encoding = settings.encoding
+    if is_cube_file(path):
+        check_cube_encoding(path, encoding.pixel, encoding.compression)
+    elif encoding.pixel in ("rgb9e5", "r11g11b10"):
+        raise InputError(f"{path}: pixel {encoding.pixel} must be in .ktx2")
+    if encoding.layers or settings.lighting.sun_disc == "separate":
+        from skybake.baking.parts import check_parts
+
+        check_parts(path, settings)
+    if encoding.mips:
+        from skybake.baking.mips import check_mips
+
+        check_mips(path, settings.view.projection)
 
 
 def bake_scene(
@@ -152,6 +196,7 @@ def bake_scene(
     preview: Path | None = None,
     picture: PictureSettings | None = None,
     attributes: Mapping[str, Attribute] | None = None,
+    light_files: Sequence[Path] | None = None,
     progress: Progress | None = None,
     stage: Callable[[str], None] | None = None,
     files: WholeFiles | None = None,
@@ -171,6 +216,7 @@ def bake_scene(
         scene.light_clouds()
     begin("pixels")
     light = light_of_scene(scene)
+    described = None if light_files is None else map_light(scene, light)
     attributes = {
         **attributes_from_light(light),
         **recipe_attributes(planet, settings),
@@ -178,13 +224,14 @@ def bake_scene(
     }
     encoding = settings.encoding
     canvases = settings.view.projection.canvases()
-    rasters = {path: Raster(scene, one) for path, one in zip(paths, canvases, strict=True)}
-    peak = max(raster.peak for raster in rasters.values())
+    rasters = [Raster(scene, canvas) for canvas in canvases]
+    peak = max(raster.peak for raster in rasters)
     largest, smallest = value_range(scene, peak)
     warnings = scene_warnings(scene, peak)
     stored = fitting_pixel(encoding.pixel, largest, smallest) if pixel is None else pixel
-    specs = {
-        path: MapSpec(
+
+    def spec(raster: Raster) -> MapSpec:
+        return MapSpec(
             raster.canvas.width,
             raster.canvas.height,
             encoding.space,
@@ -195,8 +242,7 @@ def bake_scene(
             states_exposure=not encoding.omit_exposure,
             attributes=attributes,
         )
-        for path, raster in rasters.items()
-    }
+
     with ExitStack() as stack:
         if files is None:
             files = stack.enter_context(WholeFiles())
@@ -206,25 +252,33 @@ def bake_scene(
 
             look = picture or PictureSettings()
             shown = open_picture(scene, preview, look, files, stack)
-        writers = stack.enter_context(open_maps(specs, files))
         is_radiance = paths[0].suffix.lower() == ".hdr"
-        loss = HalfLoss() if is_radiance or encoding.pixel == stored == "half" else None
-        _write(rasters, writers, scene.workers, progress, loss)
-        if loss is not None:
-            lost = loss.warning(paths[0])
-            warnings += [] if lost is None else [lost]
-        if shown is not None:
-            shown.draw()
+        with open_pictures(scene, rasters, paths, spec, files) as pictures:
+            loss = None
+            if is_radiance or (encoding.pixel == stored and stored != "float"):
+                loss = HalfLoss("half" if is_radiance else stored)
+            _write(pictures, scene.workers, progress, loss)
+            if loss is not None:
+                lost = loss.warning(paths[0])
+                warnings += [] if lost is None else [lost]
+            if shown is not None:
+                shown.draw()
+        if described is not None:
+            time = attributes.get("skybake:time")
+            for path in light_files or ():
+                write_light_file(path, described, paths, files, time=time)
     return Baked(
         **vars(light),
         files=paths,
         white_luminance=encoding.white_luminance,
-        pixel=stored if paths[0].suffix.lower() == ".exr" else "rgbe",
+        pixel="rgbe" if is_radiance else stored,
         preview=preview,
         preview_ev=None if shown is None else shown.ev,
         preview_white=None if shown is None else shown.white,
-        clamped=sum(writer.clamped for writer in writers.values()),
+        clamped=sum(each.writer.clamped for each in pictures),
         warnings=tuple(warnings),
+        map_light=described,
+        light_files=tuple(light_files or ()),
     )
 
 
@@ -233,27 +287,26 @@ def _ignore(_: str) -> None:
 
 
 def _write(
-    rasters: dict[Path, Raster],
-    writers: dict[Path, MapWriter],
+    pictures: Sequence[Picture],
     workers: Workers,
     progress: Progress | None,
     loss: HalfLoss | None,
 ) -> None:
     bands = [
-        (path, first, min(first + BAND_ROWS, raster.canvas.height))
-        for path, raster in rasters.items()
-        for first in range(0, raster.canvas.height, BAND_ROWS)
+        (picture, first, min(first + BAND_ROWS, picture.height))
+        for picture in pictures
+        for first in range(0, picture.height, BAND_ROWS)
     ]
 
-    def compute(band: tuple[Path, int, int]) -> Rows:
-        path, first, last = band
-        rows = rasters[path].rows(first, last)
+    def compute(band: tuple[Picture, int, int]) -> Any:
+        picture, first, last = band
+        rows = picture.rows(first, last)
         if loss is not None:
-            loss.add(rows)
-        return writers[path].ready(rows, workers)
+            loss.add(rows[0] if isinstance(rows, tuple) else rows)
+        return picture.writer.ready(rows, workers)
 
     computed = workers.ahead(compute, bands)
-    for i, ((path, first, last), rows) in enumerate(zip(bands, computed, strict=True)):
-        writers[path].write_ready(first, last, rows)
+    for i, ((picture, first, last), rows) in enumerate(zip(bands, computed, strict=True)):
+        picture.writer.write_ready(first, last, rows)
         if progress is not None:
             progress((i + 1) / len(bands))

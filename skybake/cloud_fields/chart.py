@@ -1,4 +1,4 @@
-"""How a flat tile of clouds lies on the sphere.
+"""How clouds lie on the sphere.
 
 Places are in a frame whose origin is on the ground under the observer: x runs east, y north, z up.
 """
@@ -7,16 +7,62 @@ from __future__ import annotations
 
 import math
 
+from skybake.cloud_fields.clearance import surface_clearance
+from skybake.cloud_fields.patches import (
+    erosion_of,
+    matters,
+    nearest_shift,
+    patch_shift,
+    patches_around,
+    room_within,
+)
+from skybake.cloud_fields.surface import surface_detail, surface_distance
 from skybake.jit.kernel import kernel
 
 _LOWEST = 0.05
-"""Share of the radius above the planet's centre from where on down the tile is not narrowed any
-further: far beyond what an observer sees."""
+"""Share of the radius above the planet's centre from where on down a tile of voxels is not narrowed
+any further: far beyond what an observer sees."""
+
+_FARTHEST = 0.02
+"""The same of the square of half the angle's cosine, for drawn clouds: close to the antipode."""
+
+
+@kernel
+def chart_scale(field, radius, x, y, z):
+    """By what a place's x and y are multiplied for those of the plane.
+
+    Voxels of a file are projected from the planet's centre to the plane that touches it under the
+    observer; drawn clouds such that areas are kept, after Lambert.
+    """
+    if field.patch == 0.0:
+        return radius / max(radius + z, _LOWEST * radius)
+    above = radius + z
+    r = math.sqrt(x * x + y * y + above * above)
+    return radius / (r * math.sqrt(max(0.5 + 0.5 * above / r, _FARTHEST)))
+
+
+@kernel
+def chart_stretch(field, radius, x, y, z):
+    """Kilometres of the plane that a kilometre may cross at a place, at most; at least 1."""
+    scale = chart_scale(field, radius, x, y, z)
+    if field.patch == 0.0:
+        height = max(radius + z, _LOWEST * radius)
+        return max(1.0, scale * math.sqrt(1.0 + (x * x + y * y) / (height * height)))
+    return max(1.0, scale)
+
+
+@kernel
+def plane_place(field, radius, x, y, z):
+    """Coordinates of a place on the plane, with the field's origin under the observer. [km]"""
+    scale = chart_scale(field, radius, x, y, z)
+    return field.origin[0] + x * scale, field.origin[1] + y * scale
 
 
 @kernel
 def tile_place(field, radius, x, y, z):
     """Coordinates of the tile at a place; lines through the planet's centre keep theirs. [km]
+
+    Of patches of the tile it is the one that the place lies in.
 
     Parameters
     ----------
@@ -32,12 +78,66 @@ def tile_place(field, radius, x, y, z):
     x, y : float
         For `skybake.cloud_fields.field.extinction_at`; only other kernels can take them.
     """
-    scale = radius / max(radius + z, _LOWEST * radius)
-    return field.origin[0] + x * scale, field.origin[1] + y * scale
+    x, y = plane_place(field, radius, x, y, z)
+    if field.patch == 0.0:
+        return x, y
+    east, north = nearest_shift(field, x, y)
+    return x + east, y + north
 
 
 @kernel
-def tile_stretch(radius, x, y, z):
-    """Kilometres of the tile that a kilometre may cross at a place, at most; at least 1."""
-    height = max(radius + z, _LOWEST * radius)
-    return max(1.0, radius / height * math.sqrt(1.0 + (x * x + y * y) / (height * height)))
+def cloud_place(field, radius, x, y, z, altitude, blur):
+    """Coordinates of the tile whose cloud is nearest to a place, or which it lies in.
+
+    Parameters
+    ----------
+    field, radius, x, y, z
+        As `tile_place` takes them.
+    altitude, blur : float
+        As `skybake.cloud_fields.field.extinction_at` takes them.
+
+    Returns
+    -------
+    x, y, erosion : float
+        For `skybake.cloud_fields.field.extinction_at`. [km]
+    room : float
+        Distance on the plane within which no other patch has clouds, and without erosion this one
+        none that are eroded. [km]
+    """
+    x, y = plane_place(field, radius, x, y, z)
+    if field.patch == 0.0:
+        return x, y, 0.0, math.inf
+    ai, aj, a, bi, bj, b, ci, cj, c = patches_around(field, x, y)
+    most = max(a, b, c)
+    # Beyond the three there are others, whose shares are 0 here.
+    room = room_within(field, 0.0, most)
+    nearest, erosion = math.inf, 0.0
+    detail = surface_detail(field, blur)
+    east = north = clear = uneroded = 0.0
+    for n in range(3):
+        if n == 0:
+            i, j, share, other = ai, aj, a, max(b, c)
+        elif n == 1:
+            i, j, share, other = bi, bj, b, max(a, c)
+        else:
+            i, j, share, other = ci, cj, c, max(a, b)
+        if not matters(share, most):
+            room = min(room, room_within(field, share, most))
+            continue
+        dx, dy = patch_shift(field, i, j)
+        if share == most and not matters(other, most):
+            return x + dx, y + dy, 0.0, min(room, room_within(field, other, most))
+        eroded = erosion_of(field, share, other)
+        distance = surface_distance(field, x + dx, y + dy, altitude, detail) + eroded
+        free = surface_clearance(field, x + dx, y + dy, altitude, blur, detail)
+        if distance < nearest:
+            if nearest < math.inf:
+                room = min(room, clear)
+            nearest, erosion, clear = distance, eroded, free
+            east, north = dx, dy
+            uneroded = room_within(field, other, share)
+        else:
+            room = min(room, free)
+    if erosion == 0.0:
+        room = min(room, uneroded)
+    return x + east, y + north, erosion, room

@@ -31,4 +31,8 @@ def empty_field() -> CloudField:
         near_clearance=np.zeros((1, 1, 1), np.uint8),
         near_unit=1.0,
         near_blur=0.0,
+        patch=0.0,
+        shifts=np.zeros((1, 1, 2)),
+        erosion=0.0,
+        vanishing=0.0,
     )

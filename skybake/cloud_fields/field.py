@@ -18,7 +18,7 @@ voxels' centres, and a signed distance from the surface of clouds, linear betwee
 
 
 class CloudField(NamedTuple):
-    """A layer of clouds that repeats to all sides.
+    """A layer of clouds on a tile, with which the plane is covered.
 
     Fields of every kind have the same types, so that one compiled kernel serves them all.
 
@@ -67,6 +67,14 @@ class CloudField(NamedTuple):
         for voxels. [`near_unit`]
     near_unit, near_blur : float
         [km]
+    patch : float
+        Distance between the middles of neighbouring patches of the plane, each of which holds
+        the tile somewhere else; 0 where it repeats to all sides. [km]
+    shifts : ndarray of float64, shape (row, column, 2)
+        By what the tile is shifted in patches. [km]
+    erosion, vanishing : float
+        How far the surface is moved inward on the edge of two patches, which keeps the mean
+        extinction there; and where nothing is left of clouds. [km]
     """
 
     kind: int
@@ -90,10 +98,14 @@ class CloudField(NamedTuple):
     near_clearance: npt.NDArray[np.uint8]
     near_unit: float
     near_blur: float
+    patch: float
+    shifts: npt.NDArray[np.float64]
+    erosion: float
+    vanishing: float
 
 
 @kernel
-def extinction_at(field, x, y, altitude, blur):
+def extinction_at(field, x, y, altitude, blur, erosion=0.0):
     """Extinction at a point of the tile, whose details below `blur` are left out. [km⁻¹]
 
     Parameters
@@ -106,15 +118,18 @@ def extinction_at(field, x, y, altitude, blur):
         Above the ground. [km]
     blur : float
         Size below which nothing needs to be resolved. [km]
+    erosion : float, optional
+        By which a surface is moved inward. [km]
     """
-    return detailed_extinction(field, x, y, altitude, detail_at(field, blur))
+    return detailed_extinction(field, x, y, altitude, detail_at(field, blur), erosion)
 
 
 @kernel
 def clearance_at(field, x, y, altitude, blur):
     """Distance around a point within which there is no cloud, 0 or less if there may be one. [km]
 
-    Distances are those of the tile, flat; parameters are those of `extinction_at`.
+    Distances are those of the tile, flat; parameters are those of `extinction_at`. It holds
+    with any erosion.
     """
     return detailed_clearance(field, x, y, altitude, blur, detail_at(field, blur))
 
@@ -128,10 +143,10 @@ def detail_at(field, blur):
 
 
 @kernel
-def detailed_extinction(field, x, y, altitude, detail):
+def detailed_extinction(field, x, y, altitude, detail, erosion=0.0):
     """Extinction at one of several points whose blur is the same, see `extinction_at`. [km⁻¹]"""
     if field.kind == SURFACE:
-        return surface_extinction(field, x, y, altitude, detail)
+        return surface_extinction(field, x, y, altitude, detail, erosion)
     if field.kind == CONSTANT:
         return voxel_extinction(field, x, y, altitude)
     return linear_extinction(field, x, y, altitude)

@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from skybake.cloud_fields.clearance import block_clearance, blocks_of
 from skybake.cloud_fields.field import SURFACE, CloudField
 from skybake.cloud_fields.near_clearance import with_near_clearance
 from skybake.cloud_fields.surface import STEP, surface_detail, surface_extinction
+from skybake.cloud_fields.surface_bounds import with_clearance
 from skybake.jit.kernel import kernel
 from skybake.jit.workers import ALL_CPUS
 
@@ -23,7 +23,6 @@ _BLURS = 7
 # Prime, so that columns meet nodes and noise at every phase.
 _COLUMNS = 139
 _FEW_COLUMNS = 67
-_NODES_PER_BLOCK = (2, 4, 4)
 _TRIALS = 12
 _CLOSE = 5e-4
 
@@ -85,7 +84,7 @@ def fitted_field(
         shift=np.full(_BLURS, offset),
     )
     field = field._replace(shift=_mean_keeping_shifts(field))
-    return with_near_clearance(_with_clearance(field))
+    return with_near_clearance(with_clearance(field))
 
 
 def _root(cover_at: Callable[[float], float], cover: float, farthest: float) -> float:
@@ -141,6 +140,10 @@ def _unfitted(surface: Surface) -> CloudField:
         near_clearance=np.zeros((1, 1, 1), np.uint8),
         near_unit=1.0,
         near_blur=0.0,
+        patch=0.0,
+        shifts=np.zeros((1, 1, 2)),
+        erosion=0.0,
+        vanishing=0.0,
     )
 
 
@@ -211,27 +214,6 @@ def _mean_keeping_shifts(field: CloudField) -> npt.NDArray[np.float64]:
             high = mean(blur, after) - wanted
         shifts[i] = before + step
     return shifts
-
-
-def _with_clearance(field: CloudField) -> CloudField:
-    """Find the blocks that no displacement and no blur carries the surface into."""
-    blurs = field.largest_blur * np.linspace(0.0, 1.0, 4 * _BLURS - 3) ** 2
-    amplitudes, waves = field.displacement[:, 0], field.displacement[:, 5]
-    noise = np.maximum(amplitudes * (1.0 - 4.0 * blurs[:, None] * waves), 0.0).sum(1)
-    reaches = noise + 0.5 * np.minimum(field.edge + blurs, field.widest_edge)
-    # Between these blurs the reach bends; a step of the noise covers what it may differ by.
-    between = float(np.abs(np.diff(noise)).max(initial=0.0))
-    reach = float(reaches.max()) + between
-    cloudy = field.distance < (reach + float(field.shift.max())) / STEP
-    for axis in range(3):
-        turned = np.roll(cloudy, -1, axis)
-        cloudy = cloudy | turned
-    cloudy = cloudy[:-1]
-    bottom = field.condensation - reach
-    heights = field.base + np.arange(1, len(cloudy) + 1) * field.spacing[0]
-    cloudy &= (heights > bottom)[:, None, None]
-    mask, block = blocks_of(cloudy, field.spacing, _NODES_PER_BLOCK)
-    return field._replace(clearance=block_clearance(mask, block), block=block)
 
 
 @kernel

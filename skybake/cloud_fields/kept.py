@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from skybake.cloud_fields.field import CloudField
-from skybake.jit.cache import source_hash
+from skybake.jit.cache import CLOUDS_PREFIX, source_hash
 from skybake.jit.tables import read_tables, write_tables
 
 
@@ -38,7 +38,7 @@ def _key(name: str, shape: tuple[float, ...]) -> str:
     text = repr(
         (name, [float(each) for each in shape], source_hash("cloud_fields"), np.__version__)
     )
-    return f"clouds-{hashlib.sha256(text.encode()).hexdigest()[:32]}"
+    return f"{CLOUDS_PREFIX}{hashlib.sha256(text.encode()).hexdigest()[:32]}"
 
 
 def _from_arrays(arrays: dict[str, Any]) -> CloudField:

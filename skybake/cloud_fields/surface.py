@@ -60,9 +60,9 @@ def surface_detail(field, blur):
 
 
 @kernel
-def surface_extinction(field, x, y, altitude, detail):
-    """Extinction at a point; parameters are those of `extinction_at`. [km⁻¹]"""
-    _, _, _, _, _, along_x, along_y, along_z = detail
+def surface_extinction(field, x, y, altitude, detail, erosion=0.0):
+    """Extinction at a point with the detail of a blur; others are as of `extinction_at`. [km⁻¹]"""
+    shift, _, _, _, _, along_x, along_y, along_z = detail
     fz = (altitude - field.base) * along_z
     levels, rows, columns = field.distance.shape
     if fz < 0.0 or fz >= levels - 1:
@@ -70,6 +70,7 @@ def surface_extinction(field, x, y, altitude, detail):
     x -= math.floor(x * along_x) * field.period[0]
     y -= math.floor(y * along_y) * field.period[1]
     distance = node_distance(field, x * along_x * columns, y * along_y * rows, fz)
+    distance += erosion - shift
     density = _density(field, distance, x, y, altitude, detail)
     if density <= 0.0:
         return 0.0
@@ -79,13 +80,26 @@ def surface_extinction(field, x, y, altitude, detail):
 
 
 @kernel
+def surface_distance(field, x, y, altitude, detail):
+    """Distance from the surface that is not displaced, of points beyond the layer that of its end.
+
+    Parameters are those of `surface_extinction`. [km]
+    """
+    shift, _, _, _, _, along_x, along_y, along_z = detail
+    levels, rows, columns = field.distance.shape
+    x -= math.floor(x * along_x) * field.period[0]
+    y -= math.floor(y * along_y) * field.period[1]
+    fz = min(max((altitude - field.base) * along_z, 0.0), levels - 1.000001)
+    return node_distance(field, x * along_x * columns, y * along_y * rows, fz) - shift
+
+
+@kernel
 def _density(field, distance, x, y, altitude, detail):
     """Share of the full extinction at a point, in [0, 1].
 
-    `distance` is that from the surface as it is stored, and x and y are within the tile.
+    `distance` is that from the surface that is not displaced, and x and y are within the tile.
     """
-    shift, width, coarse, middle, fine, _, _, _ = detail
-    distance -= shift
+    _, width, coarse, middle, fine, _, _, _ = detail
     beyond = 0.5 * width
     left = coarse + middle + fine
     if distance - left >= beyond:

@@ -15,7 +15,6 @@ from skybake.clouds.cloudscape import Cloudscape
 from skybake.clouds.directions import sun_vector
 from skybake.clouds.layer import Grid
 from skybake.clouds.unlit import Layer
-from skybake.errors import InputError
 from skybake.jit.workers import Workers
 from skybake.optics.medium import Array
 from skybake.optics.phase import build_phase
@@ -92,14 +91,12 @@ def build_cloudscape(
     Raises
     ------
     InputError
-        If a layer cannot be used, or the method of the sky has single scattering alone.
+        If a layer cannot be used.
     """
     fields = [(layer, build_field(layer, time)) for layer in clouds]
     fields = [(layer, field) for layer, field in fields if field.top > field.base]
     if not fields:
         return None
-    if sky.method == "march":
-        raise InputError("clouds: method must be full or hillaire, got march")
     chosen = QUALITIES[quality]
     layers = [_layer(layer, field, sky, weights, chosen, workers) for layer, field in fields]
     air = ClearAir(sky.atmosphere, sky.source.angular_radius, workers, sky.table_method)

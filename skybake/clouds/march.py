@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from skybake.cloud_fields.chart import tile_place
+from skybake.cloud_fields.chart import chart_stretch, cloud_place, plane_place
 from skybake.cloud_fields.field import detail_at, detailed_clearance, detailed_extinction
 from skybake.clouds.harmonics import fill_harmonics
 from skybake.clouds.light import fill_corners, fill_diffuse, sun_depth, sun_share
@@ -142,9 +142,14 @@ def fill_march(
         if end <= begin:
             continue
         place = _look(light, radius, altitude, directions[n], sun, begin, scratch)
+        # Farther from the observer the plane is stretched more.
+        far = end * dx, end * dy, altitude + end * dz
+        stretch = chart_stretch(field, radius, far[0], far[1], far[2])
         passes, depth = 1.0, 0.0
         weighted = total = due = 0.0
         share, is_new = 1.0, True
+        # Up to here the tile is shifted as it was found to be.
+        sure = until = east = north = 0.0
         known, detail = begin * marching.pixel, detail_at(field, begin * marching.pixel)
         at = begin
         shortest = marching.shortest + at * marching.pixel
@@ -155,19 +160,27 @@ def fill_march(
             px, py, pz = middle * dx, middle * dy, altitude + middle * dz
             above = pz + radius
             h = math.sqrt(px * px + py * py + above * above) - radius
-            x, y = tile_place(field, radius, px, py, pz)
             blur = middle * marching.pixel
+            x, y = plane_place(field, radius, px, py, pz)
+            if middle < sure:
+                x, y, erosion = x + east, y + north, 0.0
+            else:
+                east, north = -x, -y
+                x, y, erosion, room = cloud_place(field, radius, px, py, pz, h, blur)
+                east, north = x + east, y + north
+                sure = middle + room / stretch if erosion == 0.0 else 0.0
+                until = middle + room / stretch
             shortest = marching.shortest + blur
             if blur > SIMILAR * known:
                 known, detail = blur, detail_at(field, blur)
-            clear = detailed_clearance(field, x, y, h, blur, detail)
+            clear = min(detailed_clearance(field, x, y, h, blur, detail) / stretch, until - middle)
             if clear > 0.5 * shortest:
                 _add(scratch.source, due, seen[n])
                 due, is_new = 0.0, True
                 at = max(middle + clear, at + shortest)
                 step = shortest
                 continue
-            extinction = detailed_extinction(field, x, y, h, detail)
+            extinction = detailed_extinction(field, x, y, h, detail, erosion)
             if extinction < THINNEST:
                 at += step
                 step = shortest
@@ -182,7 +195,7 @@ def fill_march(
                 # Light between two looks is the mean of both.
                 _add(scratch.source, 0.5 * due, seen[n])
                 to_eye = depth + 0.5 * extinction * step
-                _look_up(field, light, marching, place, x, y, h, detail, to_eye, scratch)
+                _look_up(field, light, marching, place, x, y, h, detail, erosion, to_eye, scratch)
                 _add(scratch.source, 0.5 * due + weight, seen[n])
                 due, is_new = 0.0, False
             else:
@@ -207,7 +220,7 @@ def fill_march(
 
 
 @kernel
-def _depth_to_sun(field, light, marching, place, x, y, h, detail, scratch):
+def _depth_to_sun(field, light, marching, place, x, y, h, detail, erosion, scratch):
     """Optical depth toward the sun without forward peaks; leaves the point's own corners."""
     corner, weight = scratch.corner, scratch.weight
     if marching.taps == 0:
@@ -222,19 +235,20 @@ def _depth_to_sun(field, light, marching, place, x, y, h, detail, scratch):
         near = 0.0
         for q in range(marching.taps):
             s = marching.reach * (q + 0.5) / marching.taps
-            near += detailed_extinction(field, x + s * east, y + s * north, h + s * up, detail)
+            px, py, pz = x + s * east, y + s * north, h + s * up
+            near += detailed_extinction(field, px, py, pz, detail, erosion)
         depth += near * marching.reach / marching.taps * (1.0 - light.fraction)
     fill_corners(light, x, y, h, corner, weight)
     return depth
 
 
 @kernel
-def _look_up(field, light, marching, place, x, y, h, detail, to_eye, scratch):
+def _look_up(field, light, marching, place, x, y, h, detail, erosion, to_eye, scratch):
     """Write what a point sends to the eye, of the sun and of diffuse light, by its opacity.
 
     `to_eye` is the depth of all particles, those of peaks included.
     """
-    toward_sun = _depth_to_sun(field, light, marching, place, x, y, h, detail, scratch)
+    toward_sun = _depth_to_sun(field, light, marching, place, x, y, h, detail, erosion, scratch)
     fill_diffuse(
         light,
         place,

@@ -14,7 +14,7 @@ SAMPLES = 6
 
 @kernel
 def dim_visibility(
-    field, light, leaving, radius, altitude, directions, distances, sun, first, last, scratch, out
+    field, light, leaving, radius, altitude, directions, distances, sun, first, last, out
 ):
     """Multiply shares of the sun that reach stretches of rays, and their ends, by a layer's.
 
@@ -34,8 +34,6 @@ def dim_visibility(
         Toward the sun.
     first, last : int
         Rays to do.
-    scratch : ndarray of float64, shape (3,)
-        Work space.
     out : ndarray of float32, shape (ray, stretch + 1)
         Means over stretches, and the share at the end of the last.
     """
@@ -47,18 +45,14 @@ def dim_visibility(
             total = 0.0
             for i in range(SAMPLES):
                 s = begin + (end - begin) * (i + 0.5) / SAMPLES
-                total += _visible(
-                    field, light, leaving, radius, altitude, direction, s, sun, scratch
-                )
+                total += _visible(field, light, leaving, radius, altitude, direction, s, sun)
             out[n, q] *= total / SAMPLES
         s = distances[n, stretches] * (1.0 - 1e-9)
-        out[n, stretches] *= _visible(
-            field, light, leaving, radius, altitude, direction, s, sun, scratch
-        )
+        out[n, stretches] *= _visible(field, light, leaving, radius, altitude, direction, s, sun)
 
 
 @kernel
-def _visible(field, light, leaving, radius, altitude, direction, distance, sun, local):
+def _visible(field, light, leaving, radius, altitude, direction, distance, sun):
     """Share of the sun at one place of a ray."""
     px, py = distance * direction[0], distance * direction[1]
     above = altitude + distance * direction[2] + radius
@@ -88,10 +82,8 @@ def _visible(field, light, leaving, radius, altitude, direction, distance, sun, 
         return 1.0
     # Where the beam left the layer: up the way to a sun above, or down to one below.
     to_face = math.sqrt(chord) - r * mu_s if mu_s > 0.0 else -r * mu_s - math.sqrt(chord)
-    both = (mu_s + sun[2]) / (1.0 + above / r)
-    local[0], local[1] = sun[0] - both * px / r, sun[1] - both * py / r
-    x += to_face * local[0]
-    y += to_face * local[1]
+    px, py, above = px + to_face * sun[0], py + to_face * sun[1], above + to_face * sun[2]
+    x, y = tile_place(field, radius, px, py, above - radius)
     value = _between(leaving[which], light, x, y)
     if share > 0.0:
         value += share * (_between(leaving[which + 1], light, x, y) - value)

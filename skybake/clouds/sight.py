@@ -86,7 +86,7 @@ def dim_rays(
     rays = flatten(directions), flatten(distance), flatten(eye.sun)
 
     def work(first: int, last: int) -> None:
-        dim_visibility(*given, eye.radius, eye.altitude, *rays, first, last, np.empty(3), out)
+        dim_visibility(*given, eye.radius, eye.altitude, *rays, first, last, out)
 
     workers.run_rows(len(directions), work, chunk=RAYS)
 

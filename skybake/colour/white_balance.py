@@ -38,10 +38,15 @@ def white_from_kelvin(kelvin: float) -> Array:
     if kelvin >= _DAYLIGHT_FROM:
         return xyz_from_xy(*_daylight(kelvin))
     wavelength, xyz_bar = load_observer()
-    radiance = wavelength**-5 / np.expm1(_SECOND_RADIATION_CONSTANT / (wavelength * kelvin))
-    xyz = radiance @ xyz_bar
+    xyz = black_body(wavelength, kelvin) @ xyz_bar
     white: Array = xyz / xyz[1]
     return white
+
+
+def black_body(wavelength: Array, kelvin: Array | float) -> Array:
+    """Spectral radiance of a black body [K] at wavelengths [nm], in a unit of its own."""
+    radiance: Array = wavelength**-5 / np.expm1(_SECOND_RADIATION_CONSTANT / (wavelength * kelvin))
+    return radiance
 
 
 def _daylight(kelvin: float) -> tuple[float, float]:

@@ -22,7 +22,7 @@ _MEGABYTE = 1e6
 
 @click.group()
 def cache() -> None:
-    """Show, clear or fill the folder of compiled kernels and solved atmospheres."""
+    """Show, clear or fill the folder of kernels, solved atmospheres and tiles of clouds."""
 
 
 @cache.command()
@@ -31,8 +31,8 @@ def info(as_json: bool) -> None:
     """Print where the cache is and what each version keeps in it.
 
     SKYBAKE_CACHE_DIR names another place than the user's cache folder. Folders that have not been
-    used for 30 days are removed when a new version creates its own, and the oldest atmospheres when
-    all of them exceed 1 GB.
+    used for 30 days are removed when a new version creates its own, and the oldest atmospheres and
+    tiles of clouds when all of them exceed 1 GB.
     """
     from skybake.jit.cache import cache_root, cache_usage, version_directory
 
@@ -47,14 +47,15 @@ def info(as_json: bool) -> None:
         mark = " (this version)" if usage.folder == present else ""
         click.echo(
             f"{usage.folder.name}{mark}: {usage.kernels} kernels "
-            f"{usage.kernel_bytes / _MEGABYTE:.1f} MB, {usage.tables} atmospheres "
-            f"{usage.table_bytes / _MEGABYTE:.1f} MB"
+            f"{usage.kernel_bytes / _MEGABYTE:.1f} MB, {usage.atmospheres} atmospheres "
+            f"{usage.atmosphere_bytes / _MEGABYTE:.1f} MB, {usage.cloud_tiles} tiles of clouds "
+            f"{usage.cloud_tile_bytes / _MEGABYTE:.1f} MB"
         )
 
 
 @cache.command()
 def clear() -> None:
-    """Remove kernels and atmospheres of all versions.
+    """Remove kernels, atmospheres and tiles of clouds of all versions.
 
     Other files in the folder are left alone.
     """
@@ -119,7 +120,7 @@ def warm(presets: tuple[str, ...], for_all_users: bool, quiet: bool) -> None:
 
 
 def _size(usages: Sequence[Usage]) -> str:
-    total = sum(usage.kernel_bytes + usage.table_bytes for usage in usages)
+    total = sum(usage.total_bytes for usage in usages)
     return f"{total / _MEGABYTE:.1f} MB"
 
 
@@ -129,8 +130,10 @@ def _as_json(usage: Usage, *, is_present: bool) -> dict[str, Any]:
         "present": is_present,
         "kernels": usage.kernels,
         "kernel_bytes": usage.kernel_bytes,
-        "atmospheres": usage.tables,
-        "atmosphere_bytes": usage.table_bytes,
+        "atmospheres": usage.atmospheres,
+        "atmosphere_bytes": usage.atmosphere_bytes,
+        "cloud_tiles": usage.cloud_tiles,
+        "cloud_tile_bytes": usage.cloud_tile_bytes,
     }
 
 

@@ -26,7 +26,7 @@ from skybake.commands.options.previews import (
     preview_needs,
     preview_options,
 )
-from skybake.commands.options.rules import check_needs
+from skybake.commands.options.rules import check_needs, is_given
 from skybake.commands.options.times import moment_from_options, moment_needs, moment_options
 from skybake.commands.options.world import world_from_options, world_options
 from skybake.commands.printing import render_summary
@@ -47,9 +47,19 @@ from skybake.commands.printing.progress import map_progress
     *("-o", "--output"),
     metavar="FILE",
     type=click.Path(path_type=Path),
-    callback=values.with_suffix(".exr", ".hdr"),
+    callback=values.with_suffix(*values.MAP_SUFFIXES),
     show_default="a name that says what it is, in the current folder",
-    help="Map to write, .exr or .hdr; {face} in it is replaced for six files.",
+    help="Map to write, .exr or .hdr, or for all faces of a cubemap .ktx2 or .dds; {face} in it is "
+    "replaced for six files.",
+)
+@click.option(
+    "--lights",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    multiple=True,
+    callback=values.with_suffix(".json", ".usda", ".py"),
+    help="Write sky and sun as lights: .json, .usda for USD, .py for Blender. The map then "
+    "leaves the disc out, unless --sun-disc says otherwise. May be repeated.",
 )
 @preview_options
 @click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object.")
@@ -68,6 +78,7 @@ def render(**options: Any) -> None:
       skybake render --lat 48.86 --lon 2.35 --tz Europe/Paris --date 2026-06-21 --time sunset-20min
       skybake render --preset mars --site gale --ls 180 --time 16:30
       skybake render --projection cubemap --size 512 --colorspace acescg --units nits
+      skybake render --sun 20deg -o sky.exr --lights sky.usda --lights sky.light.json
     """
     check_memory()
     started = time.perf_counter()
@@ -80,6 +91,10 @@ def render(**options: Any) -> None:
         map_needs(options),
         preview_needs(options),
     )
+    leaves_disc_out = bool(options["lights"]) and not is_given(context, "sun_disc")
+    if leaves_disc_out:
+        # A renderer that took the disc and the light would count the sun twice.
+        options["sun_disc"] = "exclude"
     moment = moment_from_options(context)
     settings = map_settings(
         options,
@@ -103,6 +118,8 @@ def render(**options: Any) -> None:
     quiet = options["quiet"]
     if not quiet:
         announce(output)
+        if leaves_disc_out:
+            notice("the map leaves out the sun's disc, which is a light of its own")
     with late_kernels.compiled_in_background(), map_progress(quiet=quiet) as progress:
         baked = bake(
             planet,
@@ -111,6 +128,7 @@ def render(**options: Any) -> None:
             preview=preview,
             picture=picture_from_options(options, options["preview_ev"]) if preview else None,
             attributes=None if moment is None else moment.attributes,
+            lights=options["lights"] if options["lights"] or options["as_json"] else None,
             progress=progress,
             stage=None if progress is None else progress.begin,
             notice=None if quiet else notice,
@@ -119,6 +137,6 @@ def render(**options: Any) -> None:
         warn(warning)
     seconds = time.perf_counter() - started
     if options["as_json"]:
-        render_summary.print_json(baked, planet, settings, seconds, moment)
+        render_summary.print_json(baked, settings, seconds, moment)
     elif not quiet:
-        render_summary.print_summary(baked, seconds)
+        render_summary.print_summary(baked, settings, seconds)

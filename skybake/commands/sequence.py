@@ -82,7 +82,7 @@ SOME_FAILED = 3
     *("-o", "--output"),
     metavar="PATTERN",
     type=click.Path(path_type=Path),
-    callback=values.with_suffix(".exr", ".hdr"),
+    callback=values.with_suffix(*values.MAP_SUFFIXES),
     show_default="NAME.####.exr",
     help="Maps to write. #### is the frame number in four digits, as is a single #; %04d, "
     "{frame:04d}, $F4 and @@@@ mean the same.",

@@ -44,16 +44,10 @@ class ExrWriter(ScanlineWriter):
     def __init__(self, path: Path, temporary: Path, spec: MapSpec) -> None:
         super().__init__(path, temporary, image_spec(spec))
         self._spec = spec
-        self._largest = largest_value(spec.pixel, spec.compression)
 
     def ready(self, rows: Rows, workers: Workers = ALL_CPUS) -> Rows:
         """Check that rows fit their type, and convert them to it."""
-        ready, largest = rows, math.nan
-        if self._spec.pixel == "half" and rows.dtype == np.float32:
-            ready, largest = half_rows(np.asarray(rows, np.float32), workers)
-        if not largest <= self._largest:
-            self._check_range(rows)
-        return ready
+        return stored_rows(rows, self._spec, self._path, workers)
 
     def check_whole(self) -> None:
         """Check the table of chunks, which readers do not, and read the last row back."""
@@ -62,19 +56,36 @@ class ExrWriter(ScanlineWriter):
             raise write_error(self._path, self._temporary, fault)
         super().check_whole()
 
-    def _check_range(self, rows: Rows) -> None:
-        """Refuse what would come back as infinity; OpenImageIO stores it silently."""
-        low, high = float(rows.min()), float(rows.max())
-        if max(-low, high) <= self._largest:
-            return
-        got = low if -low > high else high
-        if not np.isfinite(got):
-            raise OutputError(f"{self._path}: radiance must be finite, got {got}")
-        raise OutputError(
-            f"{self._path}: radiance in {self._spec.pixel} with {self._spec.compression} must be "
-            f"at most {self._largest:g}, got {got:g}; use a larger unit, float with a lossless "
-            "compression, or leave the sun's disc out"
-        )
+
+def stored_rows(rows: Rows, spec: MapSpec, path: Path, workers: Workers = ALL_CPUS) -> Rows:
+    """Check that rows fit the type of a file, and convert them to it.
+
+    Raises
+    ------
+    OutputError
+        If a value would come back as infinity; OpenImageIO stores it silently.
+    """
+    ready, largest = rows, math.nan
+    if spec.pixel == "half" and rows.dtype == np.float32:
+        ready, largest = half_rows(np.asarray(rows, np.float32), workers)
+    limit = largest_value(spec.pixel, spec.compression)
+    if not largest <= limit:
+        _check_range(rows, limit, spec, path)
+    return ready
+
+
+def _check_range(rows: Rows, limit: float, spec: MapSpec, path: Path) -> None:
+    low, high = float(rows.min()), float(rows.max())
+    if max(-low, high) <= limit:
+        return
+    got = low if -low > high else high
+    if not np.isfinite(got):
+        raise OutputError(f"{path}: radiance must be finite, got {got}")
+    raise OutputError(
+        f"{path}: radiance in {spec.pixel} with {spec.compression} must be at most {limit:g}, "
+        f"got {got:g}; use a larger unit, float with a lossless compression, or leave the sun's "
+        "disc out"
+    )
 
 
 def image_spec(spec: MapSpec) -> OpenImageIO.ImageSpec:

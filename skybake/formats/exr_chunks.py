@@ -7,11 +7,13 @@ do readers, which look for the chunks themselves.
 from __future__ import annotations
 
 import struct
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import BinaryIO
 
 _MAGIC = 20000630
 _HEAD = struct.Struct("<ii")
+_MULTIPART = 0x1000
 _LONGEST_NAME = 255
 
 
@@ -31,7 +33,7 @@ def find_chunk_fault(path: Path, height: int) -> str | None:
     """
     with path.open("rb") as file:
         try:
-            _skip_header(file)
+            _read_headers(file)
             places = _read_table(file, height)
             if places is None:
                 return "no table of chunks"
@@ -40,15 +42,84 @@ def find_chunk_fault(path: Path, height: int) -> str | None:
             return "a file that ends early"
 
 
-def _skip_header(file: BinaryIO) -> None:
-    if _HEAD.unpack(file.read(8))[0] != _MAGIC:
+def find_fault(path: Path) -> str | None:
+    """Return what is wrong with the tables or the chunks of a file, None if nothing.
+
+    Parameters
+    ----------
+    path : Path
+        A file of tiles or of several parts, whose chunks are there once each and without gaps.
+    """
+    with path.open("rb") as file:
+        try:
+            parts, is_multipart = _read_headers(file)
+            if is_multipart:
+                counts = [_whole_number(part["chunkCount"]) for part in parts]
+                places = [struct.unpack(f"<{n}Q", file.read(8 * n)) for n in counts]
+            else:
+                places = [_read_table(file, None) or ()]
+            return _gap_fault(file, parts, places, is_multipart)
+        except KeyError:
+            return "a part without a number of chunks"
+        except struct.error:
+            return "a file that ends early"
+
+
+def _gap_fault(
+    file: BinaryIO,
+    parts: Sequence[Mapping[str, bytes]],
+    tables: Sequence[tuple[int, ...]],
+    is_multipart: bool,
+) -> str | None:
+    """Return which chunk does not follow another, or is not the part's that names it."""
+    end, seen = file.tell(), set()
+    for place, part in sorted(
+        (place, part) for part, table in enumerate(tables) for place in table
+    ):
+        if place != end:
+            return f"a chunk at {place} instead of {end}"
+        file.seek(place)
+        number = _whole_number(file.read(4)) if is_multipart else part
+        is_tiled = parts[part].get("type", b"").startswith(b"tiled") or "tiles" in parts[part]
+        where = (part, file.read(16 if is_tiled else 4))
+        if number != part or where in seen:
+            return f"a chunk of another part or twice, at {place}"
+        seen.add(where)
+        end = file.tell() + 4 + _whole_number(file.read(4))
+    found = file.seek(0, 2)
+    if not seen:
+        return "no table of chunks"
+    return None if found == end else f"{found} bytes instead of {end}"
+
+
+def _read_headers(file: BinaryIO) -> tuple[list[dict[str, bytes]], bool]:
+    """Read the attributes of each part, as bytes by their names, and whether there may be more."""
+    magic, version = _HEAD.unpack(file.read(8))
+    if magic != _MAGIC:
         raise struct.error
-    while _read_name(file):
+    is_multipart = bool(version & _MULTIPART)
+    parts: list[dict[str, bytes]] = []
+    while header := _read_header(file):
+        parts.append(header)
+        if not is_multipart:
+            break
+    return parts, is_multipart
+
+
+def _read_header(file: BinaryIO) -> dict[str, bytes]:
+    found: dict[str, bytes] = {}
+    while name := _read_name(file):
         _read_name(file)
-        (size,) = struct.unpack("<i", file.read(4))
-        if size < 0:
-            raise struct.error
-        file.seek(size, 1)
+        size = _whole_number(file.read(4))
+        found[name.decode("utf-8", "replace")] = file.read(size)
+    return found
+
+
+def _whole_number(data: bytes) -> int:
+    (number,) = struct.unpack("<i", data)
+    if number < 0:
+        raise struct.error
+    return int(number)
 
 
 def _read_name(file: BinaryIO) -> bytes:
@@ -60,12 +131,12 @@ def _read_name(file: BinaryIO) -> bytes:
     return name
 
 
-def _read_table(file: BinaryIO, height: int) -> tuple[int, ...] | None:
+def _read_table(file: BinaryIO, most: int | None) -> tuple[int, ...] | None:
     """Read places of chunks, the first of which directly follows the table. [byte]"""
     start = file.tell()
     (first,) = struct.unpack("<Q", file.read(8))
     count, rest = divmod(first - start, 8)
-    if not 1 <= count <= height or rest:
+    if count < 1 or rest or (most is not None and count > most):
         return None
     return (first, *struct.unpack(f"<{count - 1}Q", file.read(8 * (count - 1))))
 

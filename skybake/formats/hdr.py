@@ -11,7 +11,7 @@ import OpenImageIO
 
 from skybake.errors import InputError, OutputError
 from skybake.formats.scanlines import Rows, ScanlineWriter
-from skybake.formats.spec import Attribute, MapSpec
+from skybake.formats.spec import Attribute, MapSpec, attribute_text
 from skybake.jit.workers import ALL_CPUS, Workers
 
 RADIANCE_EFFICACY = 179.0
@@ -173,9 +173,7 @@ def read_header(path: Path) -> dict[str, str]:
 
 def _one_line(value: Attribute) -> str:
     """Text of an attribute, line breaks escaped: a bare one would end the header."""
-    if isinstance(value, tuple):
-        return " ".join(f"{component:.9g}" for component in value)
-    text = f"{value:.9g}" if isinstance(value, float) else str(value)
+    text = attribute_text(value)
     return text.replace("\\", "\\\\").replace("\r", "\\r").replace("\n", "\\n")
 
 

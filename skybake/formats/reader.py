@@ -14,6 +14,7 @@ import OpenImageIO
 
 from skybake.errors import InputError
 from skybake.formats.hdr import RADIANCE_EFFICACY, WHITE_LUMINANCE, read_header
+from skybake.formats.ktx2_texts import read_texts
 from skybake.formats.long_texts import joined
 from skybake.formats.targets import is_utf8
 
@@ -30,11 +31,15 @@ class ImageFile:
     ----------
     path : Path
         Any image of half or float pixels that OpenImageIO reads.
+    takes_integers : bool, optional
+        Also read pixels of 8 or 16 bits, which are taken as encoded for sRGB.
 
     Attributes
     ----------
     width, height : int
         Its size. [pixel]
+    is_integer : bool
+        Whether the file holds integers.
     attributes : dict
         By the file's own names, long texts in one; of a Radiance picture also `chromaticities` and
         `whiteLuminance` where its header implies them.
@@ -45,12 +50,14 @@ class ImageFile:
         If the file is missing, damaged, of integers, or without R, G, B.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, *, takes_integers: bool = False) -> None:
         self._path = path
         self._source = _open(path)
         spec = self._source.spec()
         names = [name.upper() for name in spec.channelnames]
-        if spec.format.basetype not in {OpenImageIO.HALF, OpenImageIO.FLOAT}:
+        self.is_integer = spec.format.basetype in {OpenImageIO.UINT8, OpenImageIO.UINT16}
+        is_readable = spec.format.basetype in {OpenImageIO.HALF, OpenImageIO.FLOAT}
+        if not is_readable and not (takes_integers and self.is_integer):
             raise InputError(f"{path}: pixels must be half or float, got {spec.format}")
         if names[:3] != ["R", "G", "B"]:
             found = _printable(", ".join(spec.channelnames))
@@ -74,9 +81,14 @@ class ImageFile:
                 rows = self._read(first, last)
             if rows is None:
                 raise InputError(f"{self._path}: must be complete, got {_reason(self._source)}")
-            if not np.isfinite(rows).all():
-                raise InputError(f"{self._path}: pixels must be finite, got NaN or infinity")
-            yield rows
+            is_finite = np.isfinite(rows)
+            if not is_finite.all():
+                row, column, channel = np.argwhere(~is_finite)[0].tolist()
+                raise InputError(
+                    f"{self._path}: pixels must be finite, got {rows[row, column, channel]} in "
+                    f"{'RGB'[channel]} at column {column}, row {first + row}"
+                )
+            yield _linear(rows) if self.is_integer else rows
         self._source.close()
 
     def _read(self, first: int, last: int) -> Pixels | None:
@@ -118,18 +130,30 @@ def read_image(path: Path) -> tuple[Pixels, dict[str, Any]]:
 
 
 def read_attributes(path: Path) -> dict[str, Any]:
-    """Return the attributes of a map or a preview, as of `ImageFile`.
+    """Return the attributes of a map or a preview, as of `ImageFile`; of a KTX 2 file its texts.
 
     Raises
     ------
     InputError
         If the file is missing, damaged in its header, or of another format than its suffix.
     """
+    if path.suffix.lower() == ".ktx2":
+        return read_texts(path)
     source = _open(path)
     if source.format_name() != _FORMATS.get(path.suffix.lower()):
         raise InputError(f"{path}: format must match the suffix, got {source.format_name()}")
     source.close()
     return _attributes(path, source)
+
+
+def _linear(codes: Pixels) -> Pixels:
+    """Light by which sRGB shows code values from 0 to 1 (IEC 61966-2-1)."""
+    light: Pixels = np.where(
+        codes <= np.float32(0.04045),
+        codes / np.float32(12.92),
+        ((codes + np.float32(0.055)) / np.float32(1.055)) ** np.float32(2.4),
+    )
+    return light
 
 
 def _open(path: Path) -> OpenImageIO.ImageInput:

@@ -14,9 +14,19 @@ Attribute = str | int | float | tuple[float, ...]
 HALF_MAX = 65504.0
 """Largest finite half float."""
 
+PIXELS = ("half", "float", "rgb9e5", "r11g11b10")
+"""Types of stored values."""
+
 UNDATED = "1970:01:01 00:00:00"
 """Date of a map without a date. OpenImageIO would write the present time, and the
 same map would have different bytes in every run."""
+
+
+def attribute_text(value: Attribute) -> str:
+    """Return an attribute as formats have it that know only texts."""
+    if isinstance(value, tuple):
+        return " ".join(f"{component:.9g}" for component in value)
+    return f"{value:.9g}" if isinstance(value, float) else str(value)
 
 
 class Tagged(Protocol):
@@ -47,8 +57,8 @@ class MapSpec:
         Space of the pixels.
     white_luminance : float
         Luminance of RGB (1, 1, 1). [cd m⁻²]
-    pixel : {"half", "float"}
-        Stored type; Radiance files hold RGBE regardless.
+    pixel : {"half", "float", "rgb9e5", "r11g11b10"}
+        Stored type; Radiance files hold RGBE regardless, and OpenEXR has only the first two.
     compression : str
         One of `skybake.formats.compression.COMPRESSIONS`, with an optional level
         after a colon. Radiance files have one compression of their own.
@@ -67,7 +77,7 @@ class MapSpec:
     height: int
     colour_space: Tagged
     white_luminance: float
-    pixel: Literal["half", "float"] = "half"
+    pixel: str = "half"
     compression: str = "zip"
     envmap: Literal["latlong", "cube"] | None = None
     channels: tuple[str, ...] = ("R", "G", "B")
@@ -80,8 +90,8 @@ class MapSpec:
             raise InputError(
                 f"size: width and height must be at least 1, got {self.width}x{self.height}"
             )
-        if self.pixel not in {"half", "float"}:
-            raise InputError(f"pixel: must be one of half, float, got {self.pixel!r}")
+        if self.pixel not in PIXELS:
+            raise InputError(f"pixel: must be one of {', '.join(PIXELS)}, got {self.pixel!r}")
         if not 0.0 < self.white_luminance < float("inf"):
             raise InputError(
                 f"white_luminance: must be positive, got {self.white_luminance:g} cd/m2"

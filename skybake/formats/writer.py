@@ -5,15 +5,40 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from typing import Any, Protocol
 
 from skybake.errors import InputError
+from skybake.formats.cube_file import CUBE_SUFFIXES
 from skybake.formats.exr import ExrWriter
 from skybake.formats.hdr import HdrWriter
 from skybake.formats.spec import MapSpec
 from skybake.formats.targets import check_target
 from skybake.formats.whole_files import WholeFiles
+from skybake.jit.workers import Workers
 
 MapWriter = ExrWriter | HdrWriter
+
+
+class RowWriter(Protocol):
+    """What takes the rows of a picture from top to bottom.
+
+    Attributes
+    ----------
+    clamped : int
+        Values so far that were changed because the format has no place for them.
+    """
+
+    clamped: int
+
+    def ready(self, rows: Any, workers: Workers, /) -> Any:
+        """Check rows, or those of each part, and convert them to what the file holds.
+
+        It is called on any thread.
+        """
+
+    def write_ready(self, y_begin: int, y_end: int, rows: Any, /) -> None:
+        """Write rows that `ready` returned, those from `y_begin` up to `y_end`."""
+
 
 _WRITERS: dict[str, type[ExrWriter] | type[HdrWriter]] = {".exr": ExrWriter, ".hdr": HdrWriter}
 
@@ -96,6 +121,7 @@ def check_map_path(path: Path) -> None:
     OutputError
         If a file cannot be written under that name.
     """
-    if path.suffix.lower() not in _WRITERS:
-        raise InputError(f"{path}: suffix must be one of .exr, .hdr, got {path.suffix!r}")
+    known = (*_WRITERS, *CUBE_SUFFIXES)
+    if path.suffix.lower() not in known:
+        raise InputError(f"{path}: suffix must be one of {', '.join(known)}, got {path.suffix!r}")
     check_target(path)

@@ -51,38 +51,51 @@ class CloudsOver:
         self, pixels: np.ndarray, zenith: Array, azimuth: Array, footprint: Array | float
     ) -> np.ndarray:
         """Return pixels with clouds; parameters are those of `fill_directions` and its result."""
+        return self.apart(pixels, zenith, azimuth, footprint)[0]
+
+    def apart(
+        self, pixels: np.ndarray, zenith: Array, azimuth: Array, footprint: Array | float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return pixels with clouds, and the share of the clear sky that clouds hide in each.
+
+        Parameters are those of `fill_directions` and its result; the share has the shape
+        (row, column).
+        """
         shape = pixels.shape[:2]
         angle, around, extent = (
             np.broadcast_to(each, shape).ravel() for each in (zenith, azimuth, footprint)
         )
         resolved = RESOLVED * float(np.median(extent))
-        out = self._put(pixels.reshape(-1, 3), angle, around, resolved)
+        out, opacity = self._put(pixels.reshape(-1, 3), angle, around, resolved)
         above = (self._cloudscape.horizon - angle) / extent + 0.5
         is_both = (above > WHOLE) & (above < 1.0 - WHOLE)
         if is_both.any():
-            out[is_both] = self._at_horizon(
+            out[is_both], opacity[is_both] = self._at_horizon(
                 angle[is_both], around[is_both], extent[is_both], resolved
             )
-        return out.reshape(pixels.shape)
+        return out.reshape(pixels.shape), opacity.reshape(shape)
 
     def _at_horizon(
         self, zenith: Array, azimuth: Array, footprint: Array, resolved: float
-    ) -> np.ndarray:
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Pixels that hold sky and ground: each part has its own clouds."""
         low, high = zenith - 0.5 * footprint, zenith + 0.5 * footprint
         horizon = self._cloudscape.horizon
         total = np.zeros((zenith.size, 3), np.float32)
+        hidden = np.zeros(zenith.size, np.float32)
         for begin, end in ((low, np.full_like(low, horizon)), (np.full_like(low, horizon), high)):
             middle, extent = 0.5 * (begin + end), end - begin
             clear = self._clear(middle[:, None], azimuth[:, None], extent[:, None])[:, 0]
             share = (extent / footprint).astype(np.float32)
-            total += share[:, None] * self._put(clear, middle, azimuth, resolved)
-        return total
+            light, opacity = self._put(clear, middle, azimuth, resolved)
+            total += share[:, None] * light
+            hidden += share * opacity
+        return total, hidden
 
     def _put(
         self, pixels: np.ndarray, zenith: Array, azimuth: Array, resolved: float
-    ) -> np.ndarray:
+    ) -> tuple[np.ndarray, np.ndarray]:
         xyz = pixels @ self._to_xyz
         bearing = azimuth + self._sun_azimuth
-        light, _ = self._cloudscape.put_into(xyz, zenith, bearing, resolved)
-        return light @ self._to_rgb
+        light, opacity = self._cloudscape.put_into(xyz, zenith, bearing, resolved)
+        return light @ self._to_rgb, opacity

@@ -14,7 +14,7 @@ from skybake.image.meter import scene_ev, scene_white
 from skybake.image.picture_settings import PictureSettings
 from skybake.image.raster import Raster
 from skybake.image.scene import Scene
-from skybake.image.settings import Encoding
+from skybake.image.settings import Encoding, View
 from skybake.projection import Perspective, Projection
 
 PREVIEW_WIDTH = 1024
@@ -24,15 +24,19 @@ CodeValues = npt.NDArray[np.uint8]
 _WHITE = 1e30
 
 
-def picture_projection(projection: Projection, shot: Perspective | None) -> Projection:
+def picture_projection(view: View, shot: Perspective | None) -> Projection:
     """Return what the preview of a map shows: a shot, or all of the map in a size that suits it."""
-    return projection.smaller(PREVIEW_WIDTH) if shot is None else shot
+    if shot is None:
+        return view.projection.smaller(PREVIEW_WIDTH)
+    return shot.on_map(view.rotation)
 
 
 def picture_ev(scene: Scene, settings: PictureSettings) -> float:
     """Exposure value of a picture of a scene: the given one, or what a camera meters."""
-    fixed = settings.fixed_ev
-    return scene_ev(scene, settings.shot) if fixed is None else fixed
+    if settings.fixed_ev is not None:
+        return settings.fixed_ev
+    view, shot = scene.settings.view, settings.shot
+    return scene_ev(scene, view.projection if shot is None else shot.on_map(view.rotation))
 
 
 def show_scene(
@@ -46,7 +50,8 @@ def show_scene(
 
 def thumbnail(scene: Scene, ev: float, settings: PictureSettings, width: int) -> CodeValues:
     """Picture of a scene in code values of sRGB; of the whole sphere an equirect map."""
-    shown = settings.shot or scene.settings.view.projection
+    view, shot = scene.settings.view, settings.shot
+    shown = view.projection if shot is None else shot.on_map(view.rotation)
     glance = _single(scene, shown.glance(width))
     white = scene_white(scene, settings)
     return code_values(glance, scene.settings.encoding, ev, settings.view, white)

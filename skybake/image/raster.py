@@ -2,12 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 
 from skybake.image.layers import RGB, Layer, Layers, Pixels
 from skybake.image.scene import Scene
 from skybake.image.splat import Splat
 from skybake.projection.chart import Canvas, Chart, Part
+
+CHANNELS = {
+    "sky": RGB,
+    "sun": RGB,
+    "apart": (*RGB, "clouded.R", "clouded.G", "clouded.B", "A"),
+    "transmittance": RGB,
+}
+"""Layers that a raster fills: the sky with its clouds; the sun's disc; the clear sky, the sky with
+its clouds, and the share that they hide; and the transmittance of the air to space."""
+
+Evaluate = Callable[[np.ndarray, np.ndarray, np.ndarray], Pixels]
 
 LIMB_SAMPLES = 16
 LIMB_COARSE = 0.05
@@ -51,13 +65,22 @@ class Raster:
                 planes.append(plane)
         return Layers(last - first, self.canvas.width, tuple(planes))
 
+    def band(self, name: str, first: int, last: int) -> Pixels:
+        """Return one layer of the rows first..last, of those of `CHANNELS`."""
+        plane = self._plane(name, first, last)
+        if plane is None:
+            return np.zeros((last - first, self.canvas.width, len(CHANNELS[name])), np.float32)
+        whole = Layers(last - first, self.canvas.width, (plane,)).plane(name)
+        return np.zeros(0, np.float32) if whole is None else whole
+
     def _plane(self, name: str, first: int, last: int) -> Layer | None:
         if len(self._shown) == 1:
             return self._shown[0].plane(name, first, last)
-        pixels = np.zeros((last - first, self.canvas.width, len(RGB)), np.float32)
+        channels = CHANNELS[name]
+        pixels = np.zeros((last - first, self.canvas.width, len(channels)), np.float32)
         for shown in self._shown:
             shown.fill(name, first, last, pixels)
-        return Layer(name, RGB, 0, pixels)
+        return Layer(name, channels, 0, pixels)
 
 
 class _Shown:
@@ -73,7 +96,9 @@ class _Shown:
         if name == "sun":
             begin, pixels = self.sun.rows(first, last)
             return Layer(name, RGB, begin, pixels) if len(pixels) else None
-        return Layer(name, RGB, 0, sky_pixels(self._scene, self._chart, first, last))
+        evaluate = _EVALUATE[name]
+        pixels = evaluate(self._scene, self._chart, first, last)
+        return Layer(name, CHANNELS[name], 0, pixels)
 
     def fill(self, name: str, first: int, last: int, out: Pixels) -> None:
         """Write a layer into a band of the canvas that begins at row `first`."""
@@ -97,13 +122,36 @@ class _Shown:
 
 def sky_pixels(scene: Scene, chart: Chart, first: int, last: int) -> Pixels:
     """Light of the sky and the ground in a chart's rows, without the sun's disc, RGB."""
+    return _smooth_pixels(scene, chart, first, last, scene.evaluate)
+
+
+def _apart_pixels(scene: Scene, chart: Chart, first: int, last: int) -> Pixels:
+    from skybake.image.apart import evaluate_apart
+
+    return _smooth_pixels(scene, chart, first, last, partial(evaluate_apart, scene))
+
+
+def _transmittance_pixels(scene: Scene, chart: Chart, first: int, last: int) -> Pixels:
+    from skybake.image.apart import evaluate_transmittance
+
+    return _smooth_pixels(scene, chart, first, last, partial(evaluate_transmittance, scene))
+
+
+_EVALUATE: dict[str, Callable[[Scene, Chart, int, int], Pixels]] = {
+    "sky": sky_pixels,
+    "apart": _apart_pixels,
+    "transmittance": _transmittance_pixels,
+}
+
+
+def _smooth_pixels(scene: Scene, chart: Chart, first: int, last: int, evaluate: Evaluate) -> Pixels:
     zenith, bearing = chart.angles(first, last)
     azimuth = bearing - scene.sun_bearing
     footprint = chart.footprints(first, last)
-    pixels = scene.evaluate(zenith, azimuth, footprint)
+    pixels = evaluate(zenith, azimuth, footprint)
     limb = _limb(scene, zenith, footprint)
     if limb.any():
-        _smooth_limb(scene, zenith, azimuth, footprint, limb, pixels)
+        _smooth_limb(evaluate, zenith, azimuth, footprint, limb, pixels)
     nowhere = chart.looks_nowhere(first, last)
     if nowhere is not None:
         pixels[nowhere] = 0.0
@@ -121,7 +169,7 @@ def _limb(scene: Scene, zenith: np.ndarray, footprint: np.ndarray) -> np.ndarray
 
 
 def _smooth_limb(
-    scene: Scene,
+    evaluate: Evaluate,
     zenith: np.ndarray,
     azimuth: np.ndarray,
     footprint: np.ndarray,
@@ -137,11 +185,13 @@ def _smooth_limb(
     height = np.broadcast_to(footprint, zenith.shape)[limb][:, None]
     fine = zenith[limb][:, None] + height * across
     if zenith.shape[1] == 1:
-        samples = scene.evaluate(
+        samples = evaluate(
             fine.reshape(-1, 1), azimuth, np.repeat(height, LIMB_SAMPLES, 0) / LIMB_SAMPLES
         )
-        pixels[limb[:, 0]] = samples.reshape(-1, LIMB_SAMPLES, shape[1], 3).mean(axis=1)
+        pixels[limb[:, 0]] = samples.reshape(-1, LIMB_SAMPLES, shape[1], pixels.shape[2]).mean(
+            axis=1
+        )
         return
     around = np.broadcast_to(azimuth, shape)[limb]
     around = np.broadcast_to(around[:, None], fine.shape)
-    pixels[limb] = scene.evaluate(fine, around, height / LIMB_SAMPLES).mean(axis=1)
+    pixels[limb] = evaluate(fine, around, height / LIMB_SAMPLES).mean(axis=1)

@@ -64,4 +64,17 @@ def recipe_attributes(planet: Planet, settings: MapSettings) -> dict[str, Attrib
         "skybake:preset": planet.name,
         "skybake:recipe": recipe_text(planet, settings),
         HASH_ATTRIBUTE: recipe_hash(planet, settings),
+        **target_attributes(settings),
+    }
+
+
+def target_attributes(settings: MapSettings) -> dict[str, Attribute]:
+    """Return the attributes of a map's files that tell of its target, none without one."""
+    if settings.encoding.target is None:
+        return {}
+    from skybake.image.target_sun import target_sun_direction
+
+    return {
+        "skybake:target": settings.encoding.target,
+        "skybake:targetSunDirection": target_sun_direction(settings, settings.encoding.target),
     }

@@ -49,7 +49,12 @@ PROBE_AZIMUTHS = 256
 CLOUDY_PROBE_AZIMUTHS = 128
 CELLS_AT_ONCE = 32768
 
-_LAYERS = {"include": ("sky", "sun"), "exclude": ("sky",), "only": ("sun",)}
+_LAYERS = {
+    "include": ("sky", "sun"),
+    "exclude": ("sky",),
+    "only": ("sun",),
+    "separate": ("sky", "sun"),
+}
 
 
 @cache
@@ -100,6 +105,7 @@ class Scene:
             method=settings.lighting.method,
             workers=workers,
         )
+        self.sky.check_clouds()
         self.sun_zenith = math.pi / 2.0 - settings.lighting.sun_elevation
         # Of maps that are not rotated, the compass bearing.
         self.sun_bearing = settings.lighting.sun_azimuth - settings.view.rotation
@@ -309,16 +315,22 @@ class Scene:
         UnsolvableError
             As of `survey`.
         """
+        pixels = self.evaluate_clear(zenith, azimuth, footprint)
+        if self.cloudscape is not None:
+            return self.clouds_over(self.cloudscape)(pixels, zenith, azimuth, footprint)
+        return pixels
+
+    def evaluate_clear(self, zenith: Array, azimuth: Array, footprint: Array | float) -> np.ndarray:
+        """Pixel values of the sky without clouds, see `evaluate`."""
         pixels = self._evaluate(self.table, zenith, azimuth, footprint)
         weights = self.luminance.astype(np.float32)
         # The least value is found 50 times as fast as luminances are.
         if pixels.min(initial=0.0) < 0.0 or weights.min() < 0.0:
             pixels[pixels @ weights < 0.0] = 0.0
-        if self.cloudscape is not None:
-            return self._clouds_over(self.cloudscape)(pixels, zenith, azimuth, footprint)
         return pixels
 
-    def _clouds_over(self, cloudscape: Cloudscape) -> CloudsOver:
+    def clouds_over(self, cloudscape: Cloudscape) -> CloudsOver:
+        """Return what puts clouds into pixels of the sky without them."""
         from skybake.image.cloudy import CloudsOver
 
         def clear(zenith: Array, azimuth: Array, footprint: Array) -> np.ndarray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any
 
@@ -14,13 +15,13 @@ from skybake.projection import Equirect, Projection, find_projection
 from skybake.sky.sky import METHODS
 from skybake.units import degrees, metres
 
-SUN_DISCS = ("include", "exclude", "only")
+SUN_DISCS = ("include", "exclude", "only", "separate")
 LARGEST_SUN = math.radians(20.0)
 """Largest diameter of a sun's disc that is drawn in another size than its own. [rad]"""
 
 STRONGEST_SUN = 1e6
 CLOUD_QUALITIES = ("draft", "normal", "high")
-PIXELS = ("auto", "half", "float")
+PIXELS = ("auto", "half", "float", "rgb9e5", "r11g11b10")
 
 _CLOUDS = {"cloud_time": "time", "clouds_quality": "quality"}
 
@@ -61,8 +62,8 @@ class Lighting:
         Compass bearing of the sun: 0 = north, clockwise. [rad]
     sun_distance : float or None
         Of the sun; None leaves it where the preset has it. [au]
-    sun_disc : {"include", "exclude", "only"}
-        Whether the map holds the sun's disc, or nothing else.
+    sun_disc : {"include", "exclude", "only", "separate"}
+        Whether the map holds the sun's disc, or nothing else, or each in a part of the file.
     sun_size : float or None
         Angular diameter of the disc as it is drawn, with the light of the true one, at most
         `LARGEST_SUN`; None for its own, or for what a soft one needs. [rad]
@@ -137,14 +138,22 @@ class Encoding:
         What 1.0 stands for: 1.2 * 2**15 cd/m2, or 1 cd/m2.
     ev : float or None
         If given, 1.0 stands for 1.2 * 2**ev cd/m2 instead.
-    pixel : {"auto", "half", "float"}
-        Type of stored values; auto takes half where no value is lost in it.
+    pixel : {"auto", "half", "float", "rgb9e5", "r11g11b10"}
+        Type of stored values; auto takes half where no value is lost in it. The last two, of 32
+        bits for three colours, are of KTX alone.
     compression : str
         EXR compression, see `skybake.formats.compression`.
     clamp_negative : bool
         Set negative values of colours outside the space to 0.
     omit_exposure : bool
         Leave EXPOSURE, by which some programs divide, out of a Radiance picture.
+    mips : bool
+        Write smaller copies with the map, down to one pixel, for programs that filter textures.
+    layers : bool
+        Keep sky, clouds and sun in parts of the file that add up to the map.
+    target : str or None
+        Program that the map is for, a name of `skybake.image.target.TARGETS`. It is stated in
+        files, and they must be of a format that it takes; `map_settings` sets what it needs.
     """
 
     colorspace: str = "lin_rec709"
@@ -154,11 +163,18 @@ class Encoding:
     compression: str = "zip"
     clamp_negative: bool = False
     omit_exposure: bool = False
+    mips: bool = False
+    layers: bool = False
+    target: str | None = None
 
     def __post_init__(self) -> None:
         """Refuse what cannot be stored."""
         _check_known("pixel", self.pixel, PIXELS)
         _ = self.space, self.white_luminance, parse_compression(self.compression)
+        if self.target is not None:
+            from skybake.image.target import find_target
+
+            find_target(self.target)
 
     @property
     def space(self) -> ColourSpace:
@@ -221,12 +237,15 @@ class MapSettings:
             "clamp_negative": encoding.clamp_negative,
             "omit_exposure": encoding.omit_exposure,
             "method": lighting.method,
+            **({"mips": True} if encoding.mips else {}),
+            **({"layers": True} if encoding.layers else {}),
+            **({} if encoding.target is None else {"target": encoding.target}),
             **(self.clouds.recipe() if has_clouds else {}),
         }
 
 
 def map_settings(
-    projection: Projection | str = "equirect",
+    projection: Projection | str | None = None,
     size: tuple[int, ...] | int | None = None,
     **values: Any,
 ) -> MapSettings:
@@ -235,19 +254,24 @@ def map_settings(
     Parameters
     ----------
     projection : Projection or str, optional
-        A projection, or a name of `skybake.projection.PROJECTIONS`.
+        A projection, or a name of `skybake.projection.PROJECTIONS`; by default that of the
+        target, or else ``"equirect"``.
     size : tuple of int, or int, optional
         Of a projection that is given by name: width and height, or edge. [pixel]
     **values
         Attributes of `View`, `Lighting` and `Encoding`, such as ``sun_elevation=0.1``, of the
         named projection, such as ``layout="cross"``, and ``cloud_time`` [s] and
-        ``clouds_quality``, see `Clouds`.
+        ``clouds_quality``, see `Clouds`. With ``target="blender"`` what is not given is as that
+        program needs it, and a rotation turns what it takes for north.
 
     Raises
     ------
     InputError
         If a value is out of its range, or there is no such attribute.
     """
+    if values.get("target") is not None:
+        projection, values = _for_target(values["target"], projection, values)
+    projection = projection or "equirect"
     parts = {}
     for name, kind in (("view", View), ("lighting", Lighting), ("encoding", Encoding)):
         names = {one.name for one in fields(kind)}
@@ -263,6 +287,23 @@ def map_settings(
     return MapSettings(
         view, Lighting(**parts["lighting"]), Encoding(**parts["encoding"]), Clouds(**clouds)
     )
+
+
+def _for_target(
+    name: str, projection: Projection | str | None, values: Mapping[str, Any]
+) -> tuple[Projection | str, dict[str, Any]]:
+    """Return the projection, and values by name, with what a target needs besides."""
+    from skybake.image.target import find_target
+
+    target = find_target(name)
+    projection = projection or target.projection
+    if isinstance(projection, str):
+        return projection, target.with_defaults(projection, values)
+    shape = vars(projection)
+    needed = target.with_defaults(projection.name, {**shape, **values})
+    return projection, {
+        key: value for key, value in needed.items() if key in values or key not in shape
+    }
 
 
 def _check_known(name: str, value: str, known: tuple[str, ...]) -> None:

@@ -157,6 +157,7 @@ def probe(
         wavelengths=wavelengths,
         method=fast,
     )
+    sky.check_clouds()
     columns: dict[str, Array] = {}
     seen = clouds or Clouds()
     values, errors = _radiance(planet, sky, directions, method, samples, seen)

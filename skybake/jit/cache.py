@@ -27,6 +27,9 @@ KERNEL_SUFFIX = ".kernel"
 TABLES_FOLDER = "atmospheres"
 TABLES_SUFFIX = ".tables"
 
+CLOUDS_PREFIX = "clouds-"
+"""Of the names of tables that hold a tile of clouds; all others hold an atmosphere."""
+
 KERNEL_SOURCES = (
     "jit", "optics", "transport", "cloud_fields", "scattering", "reference", "sky", "clouds",
     "formats/half.py",
@@ -134,17 +137,24 @@ class Usage:
     ----------
     folder : Path
         Where.
-    kernels, tables : int
-        How many files of either kind.
-    kernel_bytes, table_bytes : int
+    kernels, atmospheres, cloud_tiles : int
+        How many files of each kind.
+    kernel_bytes, atmosphere_bytes, cloud_tile_bytes : int
         Their sizes. [byte]
     """
 
     folder: Path
     kernels: int
     kernel_bytes: int
-    tables: int
-    table_bytes: int
+    atmospheres: int
+    atmosphere_bytes: int
+    cloud_tiles: int
+    cloud_tile_bytes: int
+
+    @property
+    def total_bytes(self) -> int:
+        """Size of all files. [byte]"""
+        return self.kernel_bytes + self.atmosphere_bytes + self.cloud_tile_bytes
 
 
 def cache_usage() -> list[Usage]:
@@ -175,14 +185,20 @@ def warn_of_no_cache(fault: str) -> None:
 
 
 def _usage(folder: Path) -> Usage:
-    kernels = _sizes(folder, KERNEL_SUFFIX)
-    tables = _sizes(folder / TABLES_FOLDER, TABLES_SUFFIX)
-    return Usage(folder, len(kernels), sum(kernels), len(tables), sum(tables))
+    kernels = _sizes(folder, f"*{KERNEL_SUFFIX}")
+    tables = folder / TABLES_FOLDER
+    tiles = _sizes(tables, f"{CLOUDS_PREFIX}*{TABLES_SUFFIX}")
+    others = _sizes(tables, f"*{TABLES_SUFFIX}", besides=CLOUDS_PREFIX)
+    counts = [number for sizes in (kernels, others, tiles) for number in (len(sizes), sum(sizes))]
+    return Usage(folder, *counts)
 
 
-def _sizes(folder: Path, suffix: str) -> list[int]:
+def _sizes(folder: Path, pattern: str, besides: str | None = None) -> list[int]:
+    """Return sizes of files, but of those whose names begin with `besides`. [byte]"""
     sizes = []
-    for path in folder.glob(f"*{suffix}"):
+    for path in folder.glob(pattern):
+        if besides is not None and path.name.startswith(besides):
+            continue
         # Another process may have removed it.
         with suppress(FileNotFoundError):
             sizes.append(path.stat().st_size)

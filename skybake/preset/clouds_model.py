@@ -73,3 +73,8 @@ class CloudLayer:
     wind_speed: float
     wind_from: float
     tile: Tile | None = None
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether the layer has no clouds by what the preset says of it."""
+        return self.tile is None and (self.cover <= 0.0 or self.optical_depth <= 0.0)

@@ -60,7 +60,7 @@ class AngularChart(FisheyeChart):
         """
         step, edge = self._step, self.width
         centre = direction_from_angles(bearing, math.pi / 2.0 - zenith)
-        from_rim = math.acos(min(max(-float(self._frame.forward @ centre), -1.0), 1.0))
+        from_rim = math.acos(min(max(-float(self.frame.forward @ centre), -1.0), 1.0))
         parts = _PARTS_PER_RADIUS if from_rim > 4.0 * radius else _PARTS_AT_RIM
         column, row, side = quarters(
             edge, self._directions, centre, radius, steepest=step, finest=radius / parts

@@ -102,28 +102,28 @@ class EquirectChart(Chart):
 
     def __init__(self, width: int, rows: str = "centres") -> None:
         self.width, self.height = width, width // 2
-        self._rows = rows
+        self.rows = rows
 
     def angles(self, first: int, last: int) -> tuple[Array, Array]:
         """Directions of the texels: rows share zenith angles, columns bearings."""
-        zenith = row_zeniths(self.height, self._rows)
+        zenith = row_zeniths(self.height, self.rows)
         return zenith[first:last, None], column_bearings(self.width)[None]
 
     def places(self, vectors: Array) -> tuple[Array, Array]:
         """Where the map shows directions."""
         zenith, bearing = zenith_azimuth(vectors)
         turns = bearing / (2.0 * math.pi)
-        row = zenith / _row_step(self.height, self._rows)
-        row = row + 0.5 if self._rows == "poles" else row
+        row = zenith / _row_step(self.height, self.rows)
+        row = row + 0.5 if self.rows == "poles" else row
         return row, (turns - np.floor(turns)) * self.width
 
     def footprints(self, _first: int, _last: int) -> Array:
         """Extent of a texel in zenith angle."""
-        return np.full((1, 1), _row_step(self.height, self._rows))
+        return np.full((1, 1), _row_step(self.height, self.rows))
 
     def solid_angles(self, first: int, last: int) -> Array:
         """Solid angle of a texel in each row, shape (row, 1). [sr]"""
-        return solid_angles(self.width, self.height, self._rows)[first:last, None]
+        return solid_angles(self.width, self.height, self.rows)[first:last, None]
 
     def disc_cells(self, zenith: float, bearing: float, radius: float) -> Cells:
         """Cut a disc into cells, each of which adds to the four nearest texels.
@@ -135,7 +135,7 @@ class EquirectChart(Chart):
         its vertical component (the illuminance of the ground) at any size, and a sun
         that moves through a sequence does not flicker from texel to texel.
         """
-        width, row_step = self.width, _row_step(self.height, self._rows)
+        width, row_step = self.width, _row_step(self.height, self.rows)
         column_step = 2.0 * math.pi / width
         row, column, distance, solid_angle = polar_cells(
             zenith,
@@ -170,7 +170,7 @@ class EquirectChart(Chart):
     def _nearest_rows(self, row: Array, zenith: Array) -> tuple[npt.NDArray[np.int64], Array]:
         """Upper one of the two rows that share each cell's flux, and the lower one's share."""
         height = self.height
-        if self._rows == "centres":
+        if self.rows == "centres":
             cosine = np.cos(row_zeniths(height))
             top = np.floor(row - 0.5).astype(np.int64)
         else:

@@ -53,7 +53,7 @@ class FisheyeChart(Chart):
 
     def __init__(self, frame: Frame, fov: float, edge: int) -> None:
         self.width = self.height = edge
-        self._frame, self._fov = frame, fov
+        self.frame, self.fov = frame, fov
         self._step = fov / edge
 
     def angles(self, first: int, last: int) -> tuple[Array, Array]:
@@ -62,7 +62,7 @@ class FisheyeChart(Chart):
 
     def places(self, vectors: Array) -> tuple[Array, Array]:
         """Where the circle shows directions."""
-        frame, half = self._frame, 0.5 * self._fov
+        frame, half = self.frame, 0.5 * self.fov
         x, y = vectors @ frame.right, -(vectors @ frame.up)
         aside = np.hypot(x, y)
         off_axis = np.arctan2(aside, vectors @ frame.forward)
@@ -83,11 +83,11 @@ class FisheyeChart(Chart):
     def solid_angles(self, first: int, last: int) -> Array:
         """Solid angles of pixels, 0 outside the circle, shape (row, column). [sr]"""
         off_axis = np.hypot(*self._plane(first, last))
-        return np.where(off_axis > 0.5 * self._fov, 0.0, self._size(off_axis))
+        return np.where(off_axis > 0.5 * self.fov, 0.0, self._size(off_axis))
 
     def looks_nowhere(self, first: int, last: int) -> npt.NDArray[np.bool_]:
         """Pixels outside the circle."""
-        outside: npt.NDArray[np.bool_] = np.hypot(*self._plane(first, last)) > 0.5 * self._fov
+        outside: npt.NDArray[np.bool_] = np.hypot(*self._plane(first, last)) > 0.5 * self.fov
         return outside
 
     def disc_cells(self, zenith: float, bearing: float, radius: float) -> Cells:
@@ -97,7 +97,7 @@ class FisheyeChart(Chart):
             self.width,
             self._step,
         )
-        frame, half = self._frame, 0.5 * self._fov
+        frame, half = self.frame, 0.5 * self.fov
         off_axis = math.acos(min(max(float(frame.forward @ centre), -1.0), 1.0))
         turn = math.atan2(-float(frame.up @ centre), float(frame.right @ centre))
         x, y = off_axis * math.cos(turn), off_axis * math.sin(turn)
@@ -121,7 +121,7 @@ class FisheyeChart(Chart):
 
     def _plane(self, first: int, last: int) -> tuple[Array, Array]:
         """Angles from the middle, to the right and down, of the pixels in rows first..last."""
-        half = 0.5 * self._fov
+        half = 0.5 * self.fov
         column, row = np.arange(self.width) + 0.5, np.arange(first, last)[:, None] + 0.5
         x, y = np.broadcast_arrays(column * self._step - half, row * self._step - half)
         return x, y
@@ -129,11 +129,11 @@ class FisheyeChart(Chart):
     def _vectors(self, x: Array, y: Array) -> Array:
         off_axis = np.hypot(x, y)
         aside = np.sinc(off_axis / math.pi)[..., None] * self._aside(x, y)
-        vectors: Array = np.cos(off_axis)[..., None] * self._frame.forward + aside
+        vectors: Array = np.cos(off_axis)[..., None] * self.frame.forward + aside
         return vectors
 
     def _aside(self, x: Array, y: Array) -> Array:
-        aside: Array = x[..., None] * self._frame.right - y[..., None] * self._frame.up
+        aside: Array = x[..., None] * self.frame.right - y[..., None] * self.frame.up
         return aside
 
     def _steps(self, x: Array, y: Array, off_axis: Array) -> tuple[Array, Array]:
@@ -142,7 +142,7 @@ class FisheyeChart(Chart):
         divisor = np.where(at_middle, 1.0, off_axis)
         cosine, sine = np.where(at_middle, 1.0, x / divisor), y / divisor
         radial = self._aside(cosine, sine)
-        along_axis = np.sin(off_axis)[..., None] * self._frame.forward
+        along_axis = np.sin(off_axis)[..., None] * self.frame.forward
         return np.cos(off_axis)[..., None] * radial - along_axis, self._aside(-sine, cosine)
 
     def _size(self, off_axis: Array) -> Array:

@@ -41,7 +41,7 @@ class GnomonicChart(Chart):
     ) -> None:
         self.frame = frame
         self.width, self.height = width, height
-        self._half_width, self._half_height = half_width, half_height
+        self.half_width, self.half_height = half_width, half_height
 
     def vectors(self, first: int, last: int) -> Array:
         """Return unit vectors of the pixels in rows first..last, shape (row, column, 3)."""
@@ -58,8 +58,8 @@ class GnomonicChart(Chart):
         before = vectors @ frame.forward
         with np.errstate(divide="ignore", invalid="ignore"):
             u, v = vectors @ frame.right / before, -(vectors @ frame.up) / before
-            column = 0.5 * self.width * (u / self._half_width + 1.0)
-            row = 0.5 * self.height * (v / self._half_height + 1.0)
+            column = 0.5 * self.width * (u / self.half_width + 1.0)
+            row = 0.5 * self.height * (v / self.half_height + 1.0)
         shown = (before > 0.0) & (np.abs(2.0 * column / self.width - 1.0) <= 1.0 + _ROUNDING)
         shown &= np.abs(2.0 * row / self.height - 1.0) <= 1.0 + _ROUNDING
         return np.where(shown, row, np.nan), np.where(shown, column, np.nan)
@@ -70,8 +70,8 @@ class GnomonicChart(Chart):
         u, v = self._plane(np.arange(self.width) + 0.5, np.arange(first, last)[:, None] + 0.5)
         nearer = 1.0 / np.sqrt(1.0 + u * u + v * v)
         right, up = self.frame.right, self.frame.up
-        across = 2.0 * self._half_width / self.width * nearer
-        along = 2.0 * self._half_height / self.height * nearer
+        across = 2.0 * self.half_width / self.width * nearer
+        along = 2.0 * self.half_height / self.height * nearer
         return zenith_extent(vectors, across[..., None] * right, along[..., None] * up)
 
     def solid_angles(self, first: int, last: int) -> Array:
@@ -91,7 +91,7 @@ class GnomonicChart(Chart):
             reach,
         )
         (left, right), (top, bottom) = bounds
-        half_width, half_height = self._half_width, self._half_height
+        half_width, half_height = self.half_width, self.half_height
         columns, cell_width = subdivide(
             left + half_width, right + half_width, 2.0 * half_width / width, radius, (0, width)
         )
@@ -110,8 +110,8 @@ class GnomonicChart(Chart):
     def _plane(self, column: npt.NDArray[Any], row: npt.NDArray[Any]) -> tuple[Array, Array]:
         """Places on the plane, right and down of its middle, given in pixels."""
         return (
-            2.0 * self._half_width * column / self.width - self._half_width,
-            2.0 * self._half_height * row / self.height - self._half_height,
+            2.0 * self.half_width * column / self.width - self.half_width,
+            2.0 * self.half_height * row / self.height - self.half_height,
         )
 
     def _vectors(self, u: Array, v: Array) -> Array:
@@ -122,8 +122,8 @@ class GnomonicChart(Chart):
 
     def _solid_angles(self, row: npt.NDArray[np.int64], column: npt.NDArray[np.int64]) -> Array:
         u, v = self._plane(column, row)
-        width = 2.0 * self._half_width / self.width
-        height = 2.0 * self._half_height / self.height
+        width = 2.0 * self.half_width / self.width
+        height = 2.0 * self.half_height / self.height
         size: Array = (
             _corner_solid_angle(u + width, v + height)
             - _corner_solid_angle(u, v + height)
@@ -136,8 +136,8 @@ class GnomonicChart(Chart):
         self, x: float, y: float, z: float, radius: float
     ) -> tuple[tuple[float, float], tuple[float, float]]:
         """Ranges of u and v that hold a disc around (x, y, z); empty if the picture misses it."""
-        nowhere = (2.0 * self._half_width,) * 2, (2.0 * self._half_height,) * 2
-        corner = math.atan(math.hypot(self._half_width, self._half_height))
+        nowhere = (2.0 * self.half_width,) * 2, (2.0 * self.half_height,) * 2
+        corner = math.atan(math.hypot(self.half_width, self.half_height))
         if z < math.cos(min(corner + radius, math.pi / 2.0 - radius)):
             return nowhere
         from_middle = math.acos(min(z, 1.0))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import fields, replace
 from typing import Any
@@ -11,13 +12,13 @@ from typing import Any
 from skybake.errors import InputError
 from skybake.projection import find_projection
 from skybake.projection.chart import Canvas, Projection, whole
-from skybake.projection.cubemap import FACES, Cubemap, FaceChart
+from skybake.projection.cubemap import FACES, Cubemap, FaceChart, parse_face_names
 from skybake.projection.equirect import Equirect
 
 # Values of OpenEXR's `envmap`, as OpenImageIO has them under `textureformat`.
 _LATLONG, _CUBE = "LatLong Environment", "CubeFace Environment"
 
-_EDGES = {"cross": 4, "vertical-cross": 3}
+_EDGES = {"cross": 4, "vertical-cross": 3, "row": 6}
 """How many edges of its faces a cubemap is wide, if more than one."""
 
 _ANGLES = {
@@ -36,6 +37,15 @@ def file_recipe(attributes: Mapping[str, Any]) -> dict[str, Any]:
     return recipe if isinstance(recipe, dict) else {}
 
 
+def file_rotation(attributes: Mapping[str, Any]) -> float:
+    """Return the bearing that the -Z of a file's map looks to, 0 if the file does not say. [rad]"""
+    shown = file_recipe(attributes).get("map")
+    turn = shown.get("rotate_deg") if isinstance(shown, dict) else None
+    if isinstance(turn, int | float) and math.isfinite(turn):
+        return math.radians(turn)
+    return 0.0
+
+
 def file_canvas(attributes: Mapping[str, Any], name: str, width: int, height: int) -> Canvas | None:
     """Return where the pixels of a file look, or None if that is not known.
 
@@ -43,7 +53,8 @@ def file_canvas(attributes: Mapping[str, Any], name: str, width: int, height: in
     ----------
     attributes : mapping
         Of the file. Its recipe comes first, then OpenEXR's `envmap`, and last the shape: 2:1 is an
-        equirect map, 4:3 a horizontal cross, and 1:6 a column of OpenEXR's faces.
+        equirect map, 4:3 a horizontal and 3:4 a vertical cross, 6:1 a row and 1:6 a column of
+        faces.
     name : str
         The file's name without its suffix, whose end says which face of a cube it is.
     width, height : int
@@ -55,37 +66,71 @@ def file_canvas(attributes: Mapping[str, Any], name: str, width: int, height: in
     return _canvas(_by_shape(attributes.get("textureformat"), width, height), width, height)
 
 
+def file_projection(attributes: Mapping[str, Any], width: int, height: int) -> Projection | None:
+    """Return the projection of the map that a file belongs to, or None if that is not known.
+
+    Parameters are those of `file_canvas`. Of six files each has the edge of all.
+    """
+    shown = file_recipe(attributes).get("map")
+    if not isinstance(shown, dict) or "projection" not in shown:
+        return sized(_by_shape(attributes.get("textureformat"), width, height), width, height)
+    if shown.get("cube_layout") == "faces" and width != height:
+        return None
+    return sized(_recipe_projection(shown), width, height)
+
+
 def _by_recipe(shown: Mapping[str, Any], name: str, width: int, height: int) -> Canvas | None:
     if shown.get("cube_layout") == "faces":
-        face = next((face for face in FACES if name.endswith(face)), None)
-        is_face = face is not None and width == height
-        return whole(FaceChart(face, width), face) if face is not None and is_face else None
+        return _face(shown, name, width) if width == height else None
+    return _canvas(_recipe_projection(shown), width, height)
+
+
+def _recipe_projection(shown: Mapping[str, Any]) -> Projection | None:
     try:
         options: dict[str, Any] = {
             own: math.radians(shown[key]) for key, own in _ANGLES.items() if key in shown
         }
         if shown.get("cube_layout") is not None:
             options["layout"] = shown["cube_layout"]
+        if "cube_space" in shown:
+            options["space"] = shown["cube_space"]
         if "equirect_rows" in shown:
             options["rows"] = shown["equirect_rows"]
-        projection = find_projection(shown["projection"], None, options)
+        return find_projection(shown["projection"], None, options)
     except (InputError, TypeError, ValueError, OverflowError):
         return None
-    return _canvas(projection, width, height)
+
+
+def _face(shown: Mapping[str, Any], name: str, edge: int) -> Canvas | None:
+    """Return where one of six files looks, which its name says at its end or between signs."""
+    try:
+        names = parse_face_names(shown.get("face_names", FACES[0]))
+        ending = [one for one in names if name.endswith(one)]
+        apart = [one for one in names if re.search(rf"(^|\W|_){re.escape(one)}(\W|_|$)", name)]
+        # Of right and bright the longer one.
+        found = max(ending or apart[:1], key=len)
+        chart = FaceChart(FACES[names.index(found)], edge, shown.get("cube_space", "world"))
+    except (InputError, AttributeError, KeyError, TypeError, ValueError):
+        return None
+    return whole(chart, found)
 
 
 def _by_shape(envmap: Any, width: int, height: int) -> Projection | None:
-    if width == 2 * height and envmap in {None, _LATLONG}:
+    if envmap not in {None, _LATLONG, _CUBE}:
+        return None
+    if height == 6 * width and envmap != _LATLONG:
+        return Cubemap(layout="column" if envmap is None else "exr")
+    if width == 2 * height and envmap != _CUBE:
         return Equirect()
-    if height == 6 * width and envmap in {None, _CUBE}:
-        return Cubemap(layout="exr")
-    if 4 * height == 3 * width and envmap is None:
-        return Cubemap(layout="cross")
+    layouts = {(4, 3): "cross", (3, 4): "vertical-cross", (6, 1): "row"}
+    for (across, down), layout in layouts.items():
+        if down * width == across * height and envmap is None:
+            return Cubemap(layout=layout)
     return None
 
 
-def _canvas(projection: Projection | None, width: int, height: int) -> Canvas | None:
-    """Return the layout of a picture of some size, if a projection has one of that shape."""
+def sized(projection: Projection | None, width: int, height: int) -> Projection | None:
+    """Return a projection whose pictures have some size, or None if it has none of that shape."""
     if projection is None:
         return None
     edge = width // _EDGES.get(getattr(projection, "layout", ""), 1)
@@ -93,7 +138,15 @@ def _canvas(projection: Projection | None, width: int, height: int) -> Canvas | 
     known = {one.name for one in fields(projection)}  # type: ignore[arg-type]
     sizes = {key: value for key, value in sizes.items() if key in known}
     try:
-        (canvas,) = replace(projection, **sizes).canvases()  # type: ignore[type-var]
+        found: Projection = replace(projection, **sizes)  # type: ignore[type-var]
     except InputError:
         return None
-    return canvas if (canvas.width, canvas.height) == (width, height) else None
+    shapes = {(canvas.width, canvas.height) for canvas in found.canvases()}
+    return found if shapes == {(width, height)} else None
+
+
+def _canvas(projection: Projection | None, width: int, height: int) -> Canvas | None:
+    """Return the layout of a picture of some size, if a projection has a single one of it."""
+    found = sized(projection, width, height)
+    canvases = () if found is None else found.canvases()
+    return canvases[0] if len(canvases) == 1 else None

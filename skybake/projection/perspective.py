@@ -96,6 +96,10 @@ class Perspective(Projection):
         """Return the same picture of that many times the width and the height."""
         return replace(self, width=self.width * times, height=self.height * times)
 
+    def on_map(self, rotation: float) -> Perspective:
+        """Return the same view in the axes of a map whose -Z looks to a bearing. [rad]"""
+        return replace(self, azimuth=self.azimuth - rotation)
+
     def vectors(self) -> Array:
         """Return unit vectors of all pixels, shape (row, column, 3); +Y up, -Z north, +X east."""
         return self._chart().vectors(0, self.height)

@@ -8,8 +8,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from skybake.cloud_fields.chart import tile_place, tile_stretch
+from skybake.cloud_fields.chart import chart_stretch, plane_place
 from skybake.cloud_fields.field import LINEAR, SURFACE, CloudField
+from skybake.cloud_fields.patches import matters, patch_shift, patches_around, room_within
 from skybake.cloud_fields.surface import STEP
 from skybake.jit.kernel import kernel
 from skybake.reference.air import Air
@@ -104,18 +105,50 @@ def _dilate(values: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
 @kernel
 def cloud_bound(field, bounds, radius, x, y, z, h):
     """Bound of a layer's extinction around a place [km⁻¹], and the distance it holds for [km]."""
-    levels, rows, columns = bounds.extinction.shape
+    levels = bounds.extinction.shape[0]
     k = math.floor((h - bounds.base) / bounds.cell[0]) + 1
     if k < 0:
         return 0.0, bounds.base - h
     if k >= levels:
         return 0.0, h - bounds.base - (levels - 2) * bounds.cell[0]
-    tile_x, tile_y = tile_place(field, radius, x, y, z)
-    j = math.floor(tile_y / bounds.cell[1]) % rows
-    i = math.floor(tile_x / bounds.cell[2]) % columns
-    # The tile's stretch changes by far less than this on the way.
-    reach = 0.99 * bounds.reach[k, j, i] / tile_stretch(radius, x, y, z)
-    return bounds.extinction[k, j, i], reach
+    plane_x, plane_y = plane_place(field, radius, x, y, z)
+    if field.patch == 0.0:
+        most, reach = _bound_in_tile(bounds, k, plane_x, plane_y)
+    else:
+        most, reach = _bound_in_patches(field, bounds, k, plane_x, plane_y)
+    # The plane's stretch changes by far less than this on the way.
+    return most, 0.99 * reach / chart_stretch(field, radius, x, y, z)
+
+
+@kernel
+def _bound_in_patches(field, bounds, k, x, y):
+    """Bound around a place of the plane, and the distance on it that it holds for."""
+    ai, aj, a, bi, bj, b, ci, cj, c = patches_around(field, x, y)
+    largest = max(a, b, c)
+    most, reach = 0.0, room_within(field, 0.0, largest)
+    for n in range(3):
+        if n == 0:
+            i, j, share = ai, aj, a
+        elif n == 1:
+            i, j, share = bi, bj, b
+        else:
+            i, j, share = ci, cj, c
+        if not matters(share, largest):
+            reach = min(reach, room_within(field, share, largest))
+            continue
+        east, north = patch_shift(field, i, j)
+        bound, distance = _bound_in_tile(bounds, k, x + east, y + north)
+        most = max(most, bound)
+        reach = min(reach, distance)
+    return most, reach
+
+
+@kernel
+def _bound_in_tile(bounds, k, x, y):
+    _, rows, columns = bounds.extinction.shape
+    j = math.floor(y / bounds.cell[1]) % rows
+    i = math.floor(x / bounds.cell[2]) % columns
+    return bounds.extinction[k, j, i], bounds.reach[k, j, i]
 
 
 def air_peaks(air: Air) -> npt.NDArray[np.float64]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from skybake.cloud_fields.chart import tile_place
+from skybake.cloud_fields.chart import cloud_place
 from skybake.cloud_fields.field import CloudField, extinction_at
 from skybake.jit.kernel import kernel
 from skybake.reference.directions import uniform
@@ -89,8 +89,9 @@ def distance_to_ground(radius, h, rising):
 @kernel
 def layer_extinction(clouds, i, radius, place, h):
     """Extinction of one layer at a place of altitude `h`. [km⁻¹]"""
-    x, y = tile_place(clouds.fields[i], radius, place[0], place[1], place[2])
-    return extinction_at(clouds.fields[i], x, y, h, 0.0)
+    field = clouds.fields[i]
+    x, y, erosion, _ = cloud_place(field, radius, place[0], place[1], place[2], h, 0.0)
+    return extinction_at(field, x, y, h, 0.0, erosion)
 
 
 @kernel

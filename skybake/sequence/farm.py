@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from skybake.errors import InputError, OutputError
+from skybake.formats.text import is_plain_line
 from skybake.formats.whole_files import replace_when_whole
 from skybake.sequence.frames import chunks, format_frames
-from skybake.sequence.text import is_plain_line
 
 ONLY = "--only"
 """Option that takes a chunk of the sequence's frames."""

@@ -18,7 +18,12 @@ from skybake.colour.exposure import ev_from_luminance
 from skybake.errors import InputError
 from skybake.formats.reader import read_attributes
 from skybake.formats.whole_files import WholeFiles, remove_leftovers
-from skybake.image.light import Light, attributes_from_light, light_from_attributes
+from skybake.image.light import (
+    Light,
+    attributes_from_light,
+    light_from_attributes,
+    light_of_scene,
+)
 from skybake.image.picture import picture_ev, thumbnail
 from skybake.image.picture_settings import PictureSettings
 from skybake.image.picture_texts import preview_texts
@@ -219,12 +224,20 @@ class _Work:
             texts = preview_texts(self._planet, settings, self.ev, self._previews.picture)
             if not texts.items() <= (_attributes(frame.preview) or {}).items():
                 return None
-        light = _light_of_file(map_paths(frame.output, settings)[0])
+        path = map_paths(frame.output, settings)[0]
+        # A DDS file has no place for it.
+        has_no_texts = path.suffix.lower() == ".dds"
+        light = _light_of_scene(self.scene) if has_no_texts else _light_of_file(path)
         return None if light is None else (light, digests)
 
     def thumbnail(self, width: int) -> npt.NDArray[np.uint8]:
         ev = self.tile_ev if width == TILE_WIDTH else self.ev
         return thumbnail(self.scene, ev, self._previews.picture, width)
+
+
+def _light_of_scene(scene: Scene) -> Light:
+    """Return the light of a scene as a file would state it."""
+    return light_from_attributes(attributes_from_light(light_of_scene(scene)))
 
 
 def _light_of_file(path: Path) -> Light | None:

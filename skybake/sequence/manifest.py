@@ -94,7 +94,7 @@ class SequenceHeader:
         Kind of the maps, a key of `skybake.projection.PROJECTIONS`.
     colorspace : str
         A name of `skybake.colour.space.COLOUR_SPACES`.
-    sun_disc : {"include", "exclude", "only"}
+    sun_disc : {"include", "exclude", "only", "separate"}
         Whether the maps hold the sun's disc, or nothing else.
     sun_angular_diameter_deg : float
         Of the star's disc in the first frame, or of the size that it is drawn in. [deg]

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
 
-from skybake.baking.paths import preview_beside, world_name
+from skybake.baking.paths import preview_beside, usual_suffix, world_name
 from skybake.ephemeris.moment import Moment, TimeSpan
 from skybake.ephemeris.place import check_planet
 from skybake.errors import ArgumentError, InputError
@@ -96,7 +96,7 @@ def plan_sequence(
     if cloud_time is not None:
         drift = [cast(float, _at(cloud_time, share)) for share in along]
     planets = _planets(preset, changes, along)
-    output = Path(output or _default_output(planets))
+    output = Path(output or _default_output(planets, settings))
     maps = _pattern("output", output, numbers)
     pictures = None if isinstance(preview, bool) else _pattern("preview", preview, numbers)
     if isinstance(exposure_curve, str | Path):
@@ -193,10 +193,10 @@ def _plain(number: float) -> float:
     return int(number) if number.is_integer() else number
 
 
-def _default_output(planets: Sequence[Planet]) -> str:
+def _default_output(planets: Sequence[Planet], settings: MapSettings) -> str:
     """Name of the world, with what was set of it, unless that changes from frame to frame."""
     name = world_name(planets[0]) if len(planets) == 1 else planets[0].name
-    return f"{name}.####.exr"
+    return f"{name}.####{usual_suffix(settings)}"
 
 
 def _pattern(argument: str, text: str | Path, numbers: Sequence[int]) -> FramePattern:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from datetime import datetime
 from functools import cached_property
 from pathlib import Path
@@ -14,18 +13,25 @@ from typing import Any
 from skybake.constants import ASTRONOMICAL_UNIT
 from skybake.errors import OutputError
 from skybake.formats.targets import check_target
-from skybake.image.settings import Lighting
+from skybake.formats.whole_files import replace_when_whole
 from skybake.optics.spectrum import star_at
-from skybake.preset import Planet
 from skybake.sequence.animation import STILL_WIDTH, check_animation, write_animation
 from skybake.sequence.frame import FrameOutcome
 from skybake.sequence.frames import FramePattern
-from skybake.sequence.manifest import FrameRecord, SequenceHeader, write_csv, write_manifest
+from skybake.sequence.manifest import (
+    FrameRecord,
+    SequenceHeader,
+    ascending,
+    write_csv,
+    write_manifest,
+)
 from skybake.sequence.plan import Frame, Plan
 from skybake.sequence.run import SequenceResult
 from skybake.sequence.sheet import TILE_WIDTH, check_sheet, contact_sheet
 from skybake.sequence.thumbnails import Thumbnails
-from skybake.sequence.usd import check_usd, write_usd
+from skybake.sidecar.light_file import seen_from
+from skybake.sidecar.map_light import disc_diameter, holds_sun
+from skybake.sidecar.usd import Common, DomeAndSun, check_usd, usd_layer
 from skybake.units import degrees, metres
 
 
@@ -93,7 +99,7 @@ class Products:
                     f"{path}: cannot be written, because the exposure curve is read from it"
                 )
             if path.suffix.lower() == ".usda":
-                maps = (_seen_from(path.parent, frame.output) for frame in self.plan.frames)
+                maps = seen_from(path.parent, [frame.output for frame in self.plan.frames])
                 check_usd(path, _header(self).projection, maps)
             else:
                 check_target(path)
@@ -117,7 +123,7 @@ class Products:
             if suffix == ".csv":
                 write_csv(path, records)
             elif suffix == ".usda":
-                write_usd(path, _header(self), records)
+                _write_usd(path, _header(self), records)
             else:
                 write_manifest(path, _header(self), records)
         numbers = [outcome.number for outcome in outcomes]
@@ -151,7 +157,7 @@ def _header(products: Products) -> SequenceHeader:
         projection=settings.view.projection.name,
         colorspace=settings.encoding.colorspace,
         sun_disc=settings.lighting.sun_disc,
-        sun_angular_diameter_deg=_diameter(planet, settings.lighting),
+        sun_angular_diameter_deg=math.degrees(disc_diameter(planet, settings.lighting)),
         recipe={"map": _common(maps), "preset": _common(worlds), "command": list(products.command)},
         fps=products.fps,
     )
@@ -186,26 +192,35 @@ def _record(plan: Plan, frame: Frame, outcome: FrameOutcome, folder: Path) -> Fr
         sun_direction=light.sun_direction,
         sun_colour=light.sun_colour,
         sun_distance_au=star.distance / ASTRONOMICAL_UNIT,
-        sun_angular_diameter_deg=_diameter(planet, settings.lighting),
+        sun_angular_diameter_deg=math.degrees(disc_diameter(planet, settings.lighting)),
         sun_illuminance_lux=light.direct_normal_illuminance,
         direct_illuminance_lux=light.direct_illuminance,
         sky_illuminance_lux=light.sky_illuminance,
         white_luminance_cd_m2=settings.encoding.white_luminance,
         exposure_ev=outcome.ev,
-        files=tuple(_seen_from(folder, path) for path in outcome.files),
+        files=tuple(seen_from(folder, outcome.files)),
         sha256=outcome.sha256,
-        preview=None if frame.preview is None else _seen_from(folder, frame.preview),
+        preview=None if frame.preview is None else seen_from(folder, [frame.preview])[0],
     )
 
 
-def _diameter(planet: Planet, lighting: Lighting) -> float:
-    """Of the disc as it is drawn. [deg]"""
-    star = star_at(planet.star, lighting.sun_distance)
-    return math.degrees(lighting.sun_size or 2.0 * star.angular_radius)
-
-
-def _seen_from(folder: Path, path: Path) -> str:
-    return Path(os.path.relpath(path, folder)).as_posix()
+def _write_usd(path: Path, header: SequenceHeader, records: Sequence[FrameRecord]) -> None:
+    common = Common(
+        preset=header.preset,
+        colorspace=header.colorspace,
+        sun_is_in_maps=holds_sun(header.sun_disc),
+        rotation_deg=header.recipe["map"]["rotate_deg"],
+        fps=header.fps,
+    )
+    rows = [
+        DomeAndSun(
+            file=record.files[0],
+            **{field.name: getattr(record, field.name) for field in fields(DomeAndSun)[1:]},
+        )
+        for record in ascending(records)
+    ]
+    with replace_when_whole(path) as temporary:
+        temporary.write_text(usd_layer(path, common, rows), "utf-8")
 
 
 def tile_label(frame: Frame, outcome: FrameOutcome) -> str:

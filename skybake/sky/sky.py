@@ -85,6 +85,17 @@ class Sky:
         self.workers = workers
         self.medium = build_medium(self.planet, self.wavelengths)
 
+    def check_clouds(self) -> None:
+        """Refuse a method that has single scattering alone in a world with clouds.
+
+        Raises
+        ------
+        InputError
+            That names the method.
+        """
+        if self.method == "march" and not all(layer.is_empty for layer in self.planet.clouds):
+            raise InputError("clouds: method must be full or hillaire, got march")
+
     @cached_property
     def star(self) -> Star:
         """The star, as far away as it is."""

@@ -197,6 +197,24 @@ def test_a_shot_of_a_file_is_that_of_its_scene(tmp_path, way, suffix):
     assert np.quantile(differing, 0.95) < 0.02
 
 
+def test_a_shot_looks_to_its_bearing_however_the_map_is_turned(tmp_path):
+    south_west = shot(math.radians(225.0), math.radians(10.0), math.radians(50.0))
+    picture = PictureSettings(ev=12.0, shot=south_west)
+    for name, rotation in (("north", 0.0), ("east", math.pi / 2.0)):
+        settings = map_settings(size=(256, 128), sun_elevation=0.2, rotation=rotation)
+        source = tmp_path / f"{name}.exr"
+        bake("earth", source, settings, preview=tmp_path / f"{name}.png", picture=picture)
+        preview_file(source, tmp_path / f"{name}_later.png", picture)
+    at_once, later = (
+        [pixels(tmp_path / f"{name}{end}.png") for name in ("north", "east")]
+        for end in ("", "_later")
+    )
+
+    for north, east in (at_once, later):
+        np.testing.assert_allclose(east, north, atol=2.5 / 255)
+    assert np.ptp(at_once[0].mean(axis=(0, 2))) > 0.05
+
+
 def test_a_shot_where_the_map_shows_nothing_is_refused(tmp_path):
     options = {"projection": "perspective", "size": (64, 36)}
     show(tmp_path, "earth", 10, **options)

@@ -24,8 +24,9 @@ def test_info_tells_what_each_version_has(tmp_path, cold):
     (old / "atmospheres").mkdir(parents=True)
     (old / "a.kernel").write_bytes(bytes(1000))
     (old / "atmospheres" / "b.tables").write_bytes(bytes(2_000_000))
+    (old / "atmospheres" / "clouds-c.tables").write_bytes(bytes(3_000_000))
     _, text, _ = run("cache", "info", env=cold)
-    assert "kernels-0123: 1 kernels 0.0 MB, 1 atmospheres 2.0 MB" in text
+    assert "kernels-0123: 1 kernels 0.0 MB, 1 atmospheres 2.0 MB, 1 tiles of clouds 3.0 MB" in text
     assert "(this version)" not in text
     found = info(cold)
     assert found["folder"] == str(tmp_path / "cache")
@@ -37,6 +38,8 @@ def test_info_tells_what_each_version_has(tmp_path, cold):
         "kernel_bytes": 1000,
         "atmospheres": 1,
         "atmosphere_bytes": 2_000_000,
+        "cloud_tiles": 1,
+        "cloud_tile_bytes": 3_000_000,
     }
 
 

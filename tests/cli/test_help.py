@@ -15,9 +15,10 @@ from skybake.commands.options import values
 from skybake.commands.render import render
 from skybake.formats.preview import VIEWS
 from skybake.image import settings
+from skybake.image.target import TARGETS
 from skybake.preset import preset_names
 from skybake.projection import PROJECTIONS
-from skybake.projection.cubemap import LAYOUTS
+from skybake.projection.cubemap import LAYOUTS, SPACES
 from skybake.projection.equirect import ROWS
 from skybake.sky.sky import METHODS
 from tests.cli.runs import invoke, run
@@ -86,11 +87,20 @@ def test_a_command_loads_no_other(tmp_path):
 
 def test_choices_are_those_of_the_engine():
     assert tuple(PROJECTIONS) == values.PROJECTIONS
-    fields = {"equirect_rows": "rows", "cube_layout": "layout", "fov": "fov", "look": "azimuth"}
+    fields = {
+        "equirect_rows": "rows",
+        "cube_layout": "layout",
+        "cube_space": "space",
+        "face_names": "face_names",
+        "fov": "fov",
+        "look": "azimuth",
+    }
     for option, having in values.PROJECTIONS_WITH.items():
         names = (kind.name for kind in PROJECTIONS.values() if hasattr(kind, fields[option]))
         assert tuple(names) == having
     assert values.CUBE_LAYOUTS == LAYOUTS
+    assert tuple(SPACES) == values.CUBE_SPACES
+    assert tuple(TARGETS) == values.TARGETS
     assert values.EQUIRECT_ROWS == ROWS
     assert tuple(COLOUR_SPACES) == values.COLOUR_SPACES
     assert values.UNITS == UNITS

@@ -46,7 +46,60 @@ def test_json_says_what_was_baked(folder):
     assert told["sun_distance_au"] == 1.0
     assert told["sun_angular_diameter_deg"] == pytest.approx(0.5329, abs=1e-4)
     assert told["warnings"] == []
-    assert len(told) == 19
+    assert (told["sun_azimuth_deg"], told["sun_elevation_deg"]) == (90.0, 30.0)
+    assert told["sun_colour"] == pytest.approx(baked.sun_colour, rel=1e-9)
+    assert 4500.0 < told["sun_colour_temperature_k"] < 5200.0
+    strength = baked.direct_normal_illuminance / baked.white_luminance
+    expected = [strength * component for component in baked.sun_colour]
+    assert told["sun_irradiance"] == pytest.approx(expected, rel=1e-9)
+    assert (told["sun_disc"], told["lights"]) == ("include", [])
+    assert len(told) == 27
+
+
+def test_the_suggested_exposure_is_that_of_a_preview():
+    told = render(*SMALL, "--sun", "5deg", "-o", "a.exr", "--preview", "a.png")
+    assert told["exposure_ev"] == told["preview_ev"]
+
+
+def test_lights_beside_a_map_leave_the_disc_out_of_it(folder):
+    names = ("a.light.json", "a.usda", "a.py")
+    files = [part for name in names for part in ("--lights", name)]
+    result = invoke("render", *SMALL, "-o", "a.exr", *files)
+    assert result.exit_code == 0
+    assert "the map leaves out the sun's disc, which is a light of its own" in result.stderr
+    assert result.stdout.splitlines()[:4] == ["a.exr", *names]
+    render(*SMALL, "-o", "b.exr", "--sun-disc", "exclude")
+    assert Path("a.exr").read_bytes() == Path("b.exr").read_bytes()
+    assert listing(folder) == sorted(["a.exr", "b.exr", *names])
+
+
+def test_lights_beside_a_map_that_is_to_hold_the_disc_are_the_sky_alone():
+    told = render(*SMALL, "-o", "a.exr", "--sun-disc", "include", "--lights", "a.json")
+    assert told["sun_disc"] == "include"
+    assert json.loads(Path("a.json").read_text())["sun"]["is_in_map"] is True
+    render(*SMALL, "-o", "b.exr")
+    assert Path("a.exr").read_bytes() == Path("b.exr").read_bytes()
+
+
+def test_size_and_strength_of_the_disc_are_those_of_the_light():
+    options = ("--sun-size", "4deg", "--sun-strength", "0.5", "--lights", "a.json")
+    told = render(*SMALL, *options, "-o", "a.exr")
+    sun = json.loads(Path("a.json").read_text())["sun"]
+    assert sun["angular_diameter_deg"] == told["sun_angular_diameter_deg"] == pytest.approx(4.0)
+    full = render(*SMALL, "-o", "b.exr")
+    half = 0.5 * full["direct_normal_illuminance_lux"]
+    assert sun["illuminance_lux"] == pytest.approx(half, rel=1e-6)
+
+
+def test_a_map_that_a_file_of_lights_cannot_refer_to_leaves_nothing(folder):
+    cube = ("--projection", "cubemap", "--size", "16")
+    result = invoke("render", *cube, "-o", "a.exr", "--lights", "a.usda")
+    assert result.exit_code == 1
+    assert result.stderr.endswith("needs maps of the projection equirect, got cubemap\n")
+    result = invoke("render", *SMALL, "-o", "a.exr", "--lights", "a.usdc")
+    assert result.exit_code == 2
+    assert "--lights" in result.stderr
+    assert listing(folder) == []
 
 
 def test_the_file_carries_what_json_says():

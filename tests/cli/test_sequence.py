@@ -51,7 +51,7 @@ P --from 2026-06-21T04:00 --to 2026-06-21T04:00 --every 1h => --to: must be afte
 --frames 1-3 -o sky.##.##.exr          => --output: sky.##.##.exr: must have one frame number
 --frames 1-3 -o a.##/sky.exr           => --output: a.##/sky.exr: the frame number belongs in the na
 --frames 1-3 -o sky.%5x.exr            => --output: sky.%5x.exr: frame number must be as ####
---frames 1-3 -o sky.####               => '-o' / '--output': sky.####: suffix must be .exr or .hdr
+--frames 1-3 -o sky.####               => sky.####: suffix must be .exr or .hdr or .ktx2 or .dds
 --frames 1-3 --preview sky.png         => --preview: sky.png: must have a place for the frame number
 --frames 1-3 --preview sky.%q.png      => --preview: sky.%q.png: frame number must be as ####
 --frames 1-3 --preview sky.#.jpg       => '--preview': sky.#.jpg: suffix must be .png, got '.jpg'
@@ -83,7 +83,7 @@ P --from 2026-06-21T04:00 --to 2026-06-21T04:00 --every 1h => --to: must be afte
 P E --date 0001-01-01 --frames 1-3     => --from: date must be in the years 1000 to 2999, got 0001-
 P E --date 9999-12-31 --frames 1-3     => --from: date must be in the years 1000 to 2999, got 9999-
 --frames 1-3 --progress loud           => '--progress': 'loud' is not one of 'auto', 'bar', 'plain'
---frames 1-3 --pixel half -o a.#.hdr   => --pixel: needs an .exr output
+--frames 1-3 --pixel half -o a.#.hdr   => --pixel: needs an .exr, .ktx2 or .dds output
 --frames 1-3 --cube-layout cross       => --cube-layout: needs --projection cubemap
 --frames 1-3 --size 64x64              => --size: width must be twice the height, got 64x64
 """

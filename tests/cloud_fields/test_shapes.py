@@ -1,5 +1,9 @@
 """Clouds that are generated."""
 
+import functools
+import math
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,6 +12,7 @@ from skybake.cloud_fields.cirrus import cirrus
 from skybake.cloud_fields.cumulus import cumulus
 from skybake.cloud_fields.fit import LEAST_DEPTH
 from skybake.cloud_fields.noise import billows
+from skybake.cloud_fields.patching import with_patches
 from skybake.preset.cloud_kinds import DEFAULTS
 from tests.cloud_fields.layers import KINDS, field, layer
 from tests.cloud_fields.sampling import clearance, column_depths, extinction, random_points
@@ -77,7 +82,7 @@ def test_there_is_no_seam_where_the_tile_ends(kind):
     assert change(0.0) < 1.5 * max(inside)
 
 
-@pytest.mark.parametrize("shape", [cumulus, cirrus])
+@pytest.mark.parametrize("shape", [cumulus, functools.partial(cirrus, wind_from=0.0)])
 def test_the_same_seed_makes_the_same_bytes_and_another_another_field(shape):
     first, again, other = (shape(0.3, 1.0, 0.4, 0.5, 20.0, seed) for seed in (3, 3, 4))
     for one, same in zip(first, again, strict=True):
@@ -86,12 +91,13 @@ def test_the_same_seed_makes_the_same_bytes_and_another_another_field(shape):
 
 
 def test_a_field_from_disk_is_the_one_that_was_built(monkeypatch):
-    arguments = 0.3, 8.0, 1.0, 2.0, 0.3, 5
+    arguments = 0.3, 8.0, 1.0, 2.0, 0.3, 5, math.radians(270.0)
     like = layer("cirrus", cover=0.3, base=8.0, depth=1.0, size=2.0, optical_depth=0.3, seed=5)
     build_field(like)
     build_field.__globals__["_shaped"].cache_clear()
     monkeypatch.setitem(build_field.__globals__["_SHAPES"], "cirrus", None)
-    for one, other in zip(build_field(like), cirrus(*arguments), strict=True):
+    built = with_patches(cirrus(*arguments), like.seed)
+    for one, other in zip(build_field(like), built, strict=True):
         np.testing.assert_array_equal(one, other)
 
 
@@ -150,28 +156,65 @@ def test_clearance_is_never_overstated_once_clouds_have_changed():
 
 
 def test_wind_carries_clouds_by_its_drift_and_nothing_else():
-    like = layer("cumulus", wind_speed=0.01, wind_from=np.radians(225.0))
-    # Details are the same again after whole periods of their evolution.
-    still, drifted = build_field(like), build_field(like, EVOLUTION)
-    points = random_points(still, 5000)
-    drift = 0.01 * EVOLUTION / np.sqrt(2.0)
-    here = points + np.array([*still.origin, 0.0])
-    before = points + np.array([*drifted.origin, 0.0])
-    there = here - np.array([drift, drift, 0.0])
-    np.testing.assert_allclose(extinction(drifted, before), extinction(still, there), atol=1e-6)
-    assert np.abs(extinction(drifted, before) - extinction(still, here)).max() > 1.0
+    like = layer("altocumulus", wind_speed=0.01, wind_from=np.radians(225.0))
+    calm = replace(like, wind_speed=0.0)
+    moment = 0.4 * EVOLUTION
+    still, drifted = build_field(calm, moment), build_field(like, moment)
+    np.testing.assert_array_equal(drifted.distance, still.distance)
+    drift = 0.01 * moment / np.sqrt(2.0)
+    np.testing.assert_allclose(drifted.origin, still.origin - drift)
 
 
-def test_evolution_is_continuous_and_periodic():
-    like = layer("cumulus", wind_speed=0.0)
-    points = random_points(build_field(like), 100_000)
+def test_evolution_is_continuous_and_replaces_all_clouds():
+    like = layer("altocumulus", wind_speed=0.0)
+    points = random_points(build_field(like), 50_000)
+    values = {}
 
     def change(first, second):
-        values = [extinction(build_field(like, time), points) for time in (first, second)]
-        return np.abs(values[1] - values[0]).mean()
+        for time in (first, second):
+            if time not in values:
+                values[time] = extinction(build_field(like, time), points)
+        return np.abs(values[second] - values[first]).mean()
 
-    assert change(0.0, EVOLUTION) == 0.0
-    # Also where the period begins anew.
-    for moment in (100.0, EVOLUTION - 0.05):
+    # Also where a generation ends.
+    for moment in (0.0, 100.0, EVOLUTION - 0.05):
         steps = [change(moment, moment + step) for step in (0.1, 1.0, 100.0)]
-        assert 0.0 < steps[0] < 0.15 * steps[1] < 0.1 * steps[2]
+        assert 0.0 <= steps[0] < 0.15 * steps[1] < 0.1 * steps[2]
+    kept = np.corrcoef(values[0.0], extinction(build_field(like, 2.0 * EVOLUTION), points))
+    assert abs(kept[0, 1]) < 0.2
+    nearly = np.corrcoef(values[0.0], values[100.0])
+    assert nearly[0, 1] > 0.8
+
+
+@pytest.mark.parametrize(
+    "kind", ["altocumulus", *(pytest.param(each, marks=pytest.mark.slow) for each in KINDS)]
+)
+def test_clouds_that_take_the_place_of_others_have_their_cover_and_optical_depth(kind):
+    like = layer(kind)
+    for moment in (0.7 * EVOLUTION, 1.4 * EVOLUTION):
+        depths = column_depths(build_field(like, moment), 80, levels=30)
+        covered = is_covered(depths, like.optical_depth)
+        assert covered.mean() == pytest.approx(like.cover, abs=0.06)
+        assert depths.mean() == pytest.approx(like.cover * like.optical_depth, rel=0.12)
+
+
+@pytest.mark.parametrize("wind_from", [60.0, 270.0])
+def test_trails_of_cirrus_lie_along_the_wind(wind_from):
+    bearing = np.radians(wind_from)
+    clouds = build_field(layer("cirrus", wind_from=bearing))
+    points = random_points(clouds, 20_000)
+    along = 0.4 * np.array([np.sin(bearing), np.cos(bearing), 0.0])
+    across = along[[1, 0, 2]] * [1.0, -1.0, 0.0]
+    here = extinction(clouds, points)
+    near = [extinction(clouds, points + away) for away in (along, across)]
+    lags, widths = (np.corrcoef(here, each)[0, 1] for each in near)
+    assert lags > 0.7
+    assert widths < 0.7 * lags
+    # What has fallen lags behind, where the wind comes from.
+    high, low = (clouds.base + share * (clouds.top - clouds.base) for share in (0.75, 0.45))
+    points[:, 2] = high
+    heads, lower = extinction(clouds, points), points + np.array([0.0, 0.0, low - high])
+    behind, before = (
+        np.corrcoef(heads, extinction(clouds, lower + 3.0 * sign * along))[0, 1] for sign in (1, -1)
+    )
+    assert behind > before + 0.1

@@ -7,11 +7,12 @@ import pytest
 
 from skybake.clouds.build import build_cloudscape
 from skybake.clouds.cloudscape import unit_vectors
+from skybake.errors import InputError
 from skybake.image.light import light_of_scene
 from skybake.image.scene import Scene
 from skybake.image.settings import map_settings
 from skybake.jit.workers import Workers
-from skybake.preset import load_preset
+from skybake.preset import PresetChanges, load_preset
 from skybake.sky.sky import Sky
 from tests.cli.runs import render
 from tests.clouds.tile_worlds import one_cloud, tile_world
@@ -39,6 +40,14 @@ def test_the_same_moment_has_the_same_bytes(tmp_path):
     options = ("--preset", world, *SMALL, "--method", "hillaire", "--cloud-time", "90s")
     first = render(tmp_path / "first.hdr", *options)
     assert render(tmp_path / "again.hdr", *options) == first
+
+
+def test_single_scattering_alone_is_refused_before_anything_is_solved_for():
+    settings = map_settings(size=64, method="march")
+    with pytest.raises(InputError, match="clouds: method must be full or hillaire, got march"):
+        Scene(load_preset("earth-fair"), settings)
+    empty = PresetChanges(keep_clouds=False, clouds=({"kind": "cumulus", "cover": 0.0},))
+    Scene(empty.load("earth"), settings)
 
 
 def radiances(folder, values, spacing, sun=25.0, altitude=0.0):

@@ -170,7 +170,7 @@ def test_a_map_that_lacks_rows_does_not_appear(tmp_path):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"pixel": "uint8"}, "pixel: must be one of half, float, got 'uint8'"),
+        ({"pixel": "uint8"}, "pixel: must be one of half, float, rgb9e5, r11g11b10, got 'uint8'"),
         ({"white_luminance": 0.0}, "white_luminance: must be positive, got 0 cd/m2"),
         ({"white_luminance": float("nan")}, "white_luminance: must be positive, got nan cd/m2"),
         ({"width": 0}, "size: width and height must be at least 1, got 0x64"),
@@ -184,7 +184,7 @@ def test_a_spec_that_no_file_can_hold_is_refused(options, message):
 @pytest.mark.parametrize("name", ["a.png", "a", "a.exr.txt"])
 def test_an_unknown_suffix_is_refused_with_the_known_ones(tmp_path, name):
     with (
-        pytest.raises(InputError, match=r"suffix must be one of .exr, .hdr, got"),
+        pytest.raises(InputError, match=r"suffix must be one of .exr, .hdr, .ktx2, .dds, got"),
         open_map(tmp_path / name, map_spec()),
     ):
         pass

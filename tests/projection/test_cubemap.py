@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from skybake.angles import zenith_azimuth
+from skybake.angles import direction_from_angles, zenith_azimuth
+from skybake.errors import InputError
 from skybake.projection import cubemap
 from skybake.projection.cubemap import CROSS_ORIGINS, FACES
 
@@ -148,3 +149,72 @@ def test_angles_of_a_face_are_those_of_its_directions(face):
     turn = np.exp(1j * (bearing - expected_bearing))
     np.testing.assert_allclose(turn, 1.0, rtol=0.0, atol=1e-14)
     assert bearing.shape == ((9, 12) if face in {"py", "ny"} else (1, 12))
+
+
+@pytest.mark.parametrize(("space", "signs"), [("flip-x", (-1, 1, 1)), ("flip-z", (1, 1, -1))])
+@pytest.mark.parametrize("face", FACES)
+def test_a_mirrored_cube_shows_the_world_with_one_axis_negated(face, space, signs):
+    flipped, direct = cubemap.FaceChart(face, 8, space), cubemap.FaceChart(face, 8)
+    np.testing.assert_array_equal(flipped.vectors(0, 8), direct.vectors(0, 8) * signs)
+    zenith, bearing = flipped.angles(0, 8)
+    turned = direction_from_angles(bearing, math.pi / 2.0 - zenith)
+    np.testing.assert_allclose(turned, flipped.vectors(0, 8), atol=1e-15)
+    np.testing.assert_array_equal(flipped.solid_angles(0, 8), direct.solid_angles(0, 8))
+    row, column = flipped.places(flipped.vectors(0, 8))
+    np.testing.assert_allclose(row, np.broadcast_to(np.arange(8)[:, None] + 0.5, (8, 8)))
+    np.testing.assert_allclose(column, np.broadcast_to(np.arange(8) + 0.5, (8, 8)))
+
+
+@pytest.mark.parametrize("space", ["flip-x", "flip-z"])
+def test_a_disc_is_whole_in_a_mirrored_cube(space):
+    """Across an edge of the cube."""
+    zenith, bearing = math.radians(60.0), math.radians(45.0)
+    toward = direction_from_angles(bearing, math.pi / 2.0 - zenith)
+    cap, flux = 0.0, np.zeros(3)
+    for face in FACES:
+        chart = cubemap.FaceChart(face, 64, space)
+        cells = chart.disc_cells(zenith, bearing, SUN_RADIUS)
+        cap += cells.solid_angle.sum()
+        vectors = chart.vectors(0, 64).reshape(-1, 3)[cells.texel[:, 0]]
+        flux += cells.solid_angle @ vectors
+    assert cap == pytest.approx(4.0 * math.pi * math.sin(SUN_RADIUS / 2.0) ** 2, rel=5e-4)
+    assert flux / cap == pytest.approx(toward, abs=0.02)
+
+
+@pytest.mark.parametrize("style", cubemap.FACE_NAMES)
+def test_a_style_of_names_is_that_of_its_first(style):
+    names = cubemap.parse_face_names(style)
+    assert names[0] == style
+    assert len(set(names)) == 6
+    assert cubemap.parse_face_names(",".join(names)) == names
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "py",
+        "a,b,c,d,e",
+        "a,b,c,d,e,f,g",
+        "a,a,c,d,e,f",
+        "a,A,c,d,e,f",
+        "a,b,c,d,e,",
+        "a/,b,c,d,e,f",
+    ],
+)
+def test_other_names_are_refused(text):
+    with pytest.raises(InputError, match="face-names: must be px, posx, "):
+        cubemap.parse_face_names(text)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"space": "flip-y"}, "cube-space: must be one of world, flip-x, flip-z, got 'flip-y'"),
+        ({"layout": "exr", "space": "flip-x"}, "cube-space: must be world for the cube layout exr"),
+        ({"layout": "cross", "face_names": "posx"}, "face-names: must belong to the cube layout"),
+    ],
+)
+def test_what_no_reader_expects_is_refused(options, message):
+    with pytest.raises(InputError, match=message):
+        cubemap.Cubemap(4, **options)

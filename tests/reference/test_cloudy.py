@@ -6,7 +6,7 @@ import numba
 import numpy as np
 import pytest
 
-from skybake.cloud_fields.chart import tile_place
+from skybake.cloud_fields.chart import cloud_place
 from skybake.cloud_fields.field import extinction_at
 from skybake.errors import InputError
 from skybake.jit import workers
@@ -231,8 +231,9 @@ def bound_and_extinctions(field, bounds, radius, place, offsets, out):
     most, reach = cloud_bound(field, bounds, radius, x, y, z, z)
     for i in range(len(offsets)):
         dx, dy, dz = offsets[i]
-        tile_x, tile_y = tile_place(field, radius, x + reach * dx, y + reach * dy, z + reach * dz)
-        out[i] = extinction_at(field, tile_x, tile_y, z + reach * dz, 0.0)
+        near = x + reach * dx, y + reach * dy, z + reach * dz
+        tile_x, tile_y, erosion, _ = cloud_place(field, radius, *near, near[2], 0.0)
+        out[i] = extinction_at(field, tile_x, tile_y, near[2], 0.0, erosion)
     return most
 
 
@@ -245,7 +246,7 @@ def test_extinction_is_nowhere_above_its_bound(clouds):
     offsets *= random.random((200, 1)) ** 0.3 / np.linalg.norm(offsets, axis=1, keepdims=True)
     out, tight = np.empty(200), []
     for _ in range(600):
-        place = tuple(random.uniform([-9.0, -9.0, 0.5], [9.0, 9.0, 3.0]))
+        place = tuple(random.uniform([-40.0, -40.0, 0.5], [40.0, 40.0, 3.0]))
         most = bound_and_extinctions(field, bounds, 1e9, place, offsets, out)
         assert out.max() <= most
         tight.append(most == 0.0)

@@ -12,20 +12,36 @@ from skybake.commands.options.rules import Needs, options_together
 from skybake.errors import InputError
 
 if TYPE_CHECKING:
-    from skybake.image.settings import MapSettings
+    from pathlib import Path
 
-_SHAPES = {"cube_layout": "layout", "equirect_rows": "rows", "fov": "fov"}
+    from skybake.image.settings import MapSettings
+    from skybake.image.target import Target
+
+_SHAPES = {
+    "cube_layout": "layout",
+    "cube_space": "space",
+    "face_names": "face_names",
+    "equirect_rows": "rows",
+    "fov": "fov",
+}
 _ENCODINGS = (
     *("colorspace", "units", "ev", "pixel", "compression", "clamp_negative"),
-    *("omit_exposure", "sun_disc", "sun_size", "sun_soft", "sun_strength", "method"),
+    *("omit_exposure", "mips", "layers", "target", "method"),
+    *("sun_disc", "sun_size", "sun_soft", "sun_strength"),
 )
 
 map_options = options_together(
     click.option(
+        "--target",
+        metavar="NAME",
+        type=click.Choice(values.TARGETS),
+        help="Program that the map is for, see skybake targets: sets projection, turn, format, "
+        "scale and whether the sun is in the map, where other options do not.",
+    ),
+    click.option(
         "--projection",
         type=click.Choice(values.PROJECTIONS),
-        default="equirect",
-        show_default=True,
+        show_default="equirect",
         help="Kind of map; fisheye is equidistant, perspective a camera's picture, angular a light "
         "probe.",
     ),
@@ -55,7 +71,23 @@ map_options = options_together(
         "--cube-layout",
         type=click.Choice(values.CUBE_LAYOUTS),
         show_default="faces",
-        help="Six files px nx py ny pz nz, one horizontal or vertical cross, or one OpenEXR cube.",
+        help="Six files px nx py ny pz nz, one horizontal or vertical cross, row or column, or one "
+        "OpenEXR cube.",
+    ),
+    click.option(
+        "--cube-space",
+        type=click.Choice(values.CUBE_SPACES),
+        show_default="world",
+        help="Axes of a cubemap: the map's own, or with x or z negated, for programs that negate "
+        "it before they sample a cube, and for left-handed ones.",
+    ),
+    click.option(
+        "--face-names",
+        metavar="STYLE|A,B,C,D,E,F",
+        show_default="px",
+        help="How six files are named, in the place of {face} in --output or at the end: "
+        "px nx .., posx negx .., +X -X .., right left top bottom front back, or six names for "
+        "+X -X +Y -Y +Z -Z.",
     ),
     click.option(
         "--equirect-rows",
@@ -70,7 +102,7 @@ map_options = options_together(
         type=values.bearing,
         show_default="0deg",
         help="Compass bearing of the map's -Z, instead of north; the middle of an equirect map "
-        "is opposite.",
+        "is opposite. With --target, that of what the program takes for north.",
     ),
     click.option(
         "--colorspace",
@@ -95,13 +127,26 @@ map_options = options_together(
         "--pixel",
         type=click.Choice(values.PIXELS),
         show_default="auto",
-        help="Stored type of an EXR; auto takes half where it holds every value.",
+        help="Stored type; auto takes half where it holds every value. rgb9e5 and r11g11b10 are of "
+        "a .ktx2.",
     ),
     click.option(
         "--compression",
         metavar="NAME[:LEVEL]",
         show_default="zip",
-        help="Of an EXR: none, rle, zips, zip[:1-9], piz, pxr24, b44, b44a, dwaa[:0-135], ...",
+        help="Of an EXR: none, rle, zips, zip[:1-9], piz, pxr24, b44, b44a, dwaa[:0-135], ...; "
+        "of a .ktx2: zstd (default) or none.",
+    ),
+    click.option(
+        "--mips",
+        is_flag=True,
+        help="Write smaller copies with the map, down to one pixel, as programs need that filter "
+        "textures; of an equirect .exr or a cubemap whose size is a power of two.",
+    ),
+    click.option(
+        "--layers",
+        is_flag=True,
+        help="Keep sky, clouds and sun in parts of an .exr besides what they add up to.",
     ),
     click.option("--clamp-negative", is_flag=True, help="Set negative values (out of gamut) to 0."),
     click.option(
@@ -112,9 +157,9 @@ map_options = options_together(
     click.option(
         "--sun-disc",
         type=click.Choice(values.SUN_DISCS),
-        default="include",
-        show_default=True,
-        help="Whether the map holds the sun's disc, or nothing else.",
+        show_default="include",
+        help="Whether the map holds the sun's disc, or nothing else, or as separate parts of an "
+        ".exr.",
     ),
     click.option(
         "--sun-size",
@@ -154,27 +199,101 @@ def map_needs(options: Mapping[str, Any]) -> Needs:
     click.UsageError
         If the format of the output cannot hold the map.
     """
-    is_radiance = options["output"] is not None and options["output"].suffix.lower() == ".hdr"
-    if is_radiance and options["cube_layout"] == "exr":
-        raise click.UsageError("--cube-layout exr: needs an .exr output")
+    projection, suffix, disc = _projection(options), _suffix(options), _sun_disc(options)
+    is_radiance = suffix == ".hdr"
+    _check_suffix(suffix, options)
     return {
         **{
-            name: (options["projection"] in having, f"needs --projection {' or '.join(having)}")
+            name: (projection in having, f"needs --projection {' or '.join(having)}")
             for name, having in values.PROJECTIONS_WITH.items()
         },
         "rotate": (
-            options["projection"] not in values.PROJECTIONS_WITH["look"],
-            f"cannot be combined with --projection {options['projection']}, which has --look",
+            projection not in values.PROJECTIONS_WITH["look"],
+            f"cannot be combined with --projection {projection}, which has --look",
         ),
         **dict.fromkeys(
             ("sun_size", "sun_soft", "sun_strength"),
-            (options["sun_disc"] != "exclude", "cannot be combined with --sun-disc exclude"),
+            # Lights beside the map have them too.
+            (
+                disc != "exclude" or bool(options.get("lights")),
+                "cannot be combined with --sun-disc exclude"
+                if options["sun_disc"] is not None
+                else f"needs --sun-disc include with --target {options['target']}",
+            ),
         ),
         "omit_exposure": (is_radiance, "needs an .hdr output"),
-        "pixel": (not is_radiance, "needs an .exr output"),
-        "compression": (not is_radiance, "needs an .exr output"),
+        "pixel": (not is_radiance, "needs an .exr, .ktx2 or .dds output"),
+        "compression": (suffix in {".exr", ".ktx2"}, "needs an .exr or .ktx2 output"),
+        "mips": (not is_radiance, "needs an .exr, .ktx2 or .dds output"),
+        "layers": (
+            suffix == ".exr" and not options["mips"] and options["sun_disc"] != "only",
+            "needs an .exr output that holds the sky, without --mips",
+        ),
         "units": (options["ev"] is None, "cannot be combined with --ev"),
     }
+
+
+def _check_suffix(suffix: str, options: Mapping[str, Any]) -> None:
+    layout = options["cube_layout"]
+    if layout == "exr" and suffix != ".exr":
+        raise click.UsageError("--cube-layout exr: needs an .exr output")
+    if suffix in values.CUBE_SUFFIXES:
+        if _projection(options) != "cubemap":
+            raise click.UsageError(f"--output: {suffix} needs --projection cubemap")
+        if layout not in {None, "faces"}:
+            raise click.UsageError(f"--cube-layout {layout}: needs an .exr or .hdr output")
+        if options["compression"] not in {None, "zstd", "none"}:
+            raise click.UsageError(
+                f"--compression: of a .ktx2 must be zstd or none, got {options['compression']!r}"
+            )
+    if options["sun_disc"] == "separate" and (suffix != ".exr" or options["mips"]):
+        problem = "cannot be combined with --mips" if options["mips"] else "needs an .exr output"
+        raise click.UsageError(f"--sun-disc separate: {problem}")
+    if options["pixel"] in {"rgb9e5", "r11g11b10"} and suffix != ".ktx2":
+        raise click.UsageError(f"--pixel {options['pixel']}: needs a .ktx2 output")
+
+
+def _target(options: Mapping[str, Any]) -> Target | None:
+    if options["target"] is None:
+        return None
+    from skybake.image.target import find_target
+
+    return find_target(options["target"])
+
+
+def _projection(options: Mapping[str, Any]) -> str:
+    """Return the projection that is asked for, or that of the target."""
+    target, projection = _target(options), options["projection"]
+    name: str = projection or ("equirect" if target is None else target.projection)
+    return name
+
+
+def _suffix(options: Mapping[str, Any]) -> str:
+    """Return the suffix of the map's files.
+
+    Raises
+    ------
+    click.UsageError
+        If the target takes no such map or no such files.
+    """
+    target, projection = _target(options), _projection(options)
+    output: Path | None = options["output"]
+    if target is not None:
+        try:
+            target.check(projection, {})
+            if output is None:
+                return target.suffix(projection)
+            target.check_suffix(projection, output.suffix)
+        except InputError as error:
+            raise click.UsageError(f"--{error}") from error
+    return ".exr" if output is None else output.suffix.lower()
+
+
+def _sun_disc(options: Mapping[str, Any]) -> str:
+    """Return which of the sun and the sky the map shows."""
+    target = _target(options)
+    disc: str = options["sun_disc"] or ("include" if target is None else target.sun_disc)
+    return disc
 
 
 def map_settings(options: Mapping[str, Any], **others: Any) -> MapSettings:
@@ -195,7 +314,11 @@ def map_settings(options: Mapping[str, Any], **others: Any) -> MapSettings:
     """
     from skybake.image import settings
 
-    given = {name: options[name] for name in _ENCODINGS if options[name] is not None}
+    given = {
+        name: options[name]
+        for name in _ENCODINGS
+        if options[name] is not None and options[name] is not False
+    }
     shape = {own: options[name] for name, own in _SHAPES.items() if options[name] is not None}
     if options["look"] is not None:
         shape["azimuth"], shape["elevation"] = options["look"]

@@ -25,15 +25,24 @@ PROJECTIONS = ("equirect", "cubemap", "fisheye", "perspective", "angular", "octa
 PROJECTIONS_WITH = {
     "equirect_rows": ("equirect",),
     "cube_layout": ("cubemap",),
+    "cube_space": ("cubemap",),
+    "face_names": ("cubemap",),
     "fov": ("fisheye", "perspective"),
     "look": ("fisheye", "perspective"),
 }
+TARGETS = (
+    *("blender", "usd", "mitsuba", "houdini", "openexr"),
+    *("unreal", "unity", "godot", "bevy", "three", "filament"),
+)
 EQUIRECT_ROWS = ("centres", "poles")
-CUBE_LAYOUTS = ("faces", "cross", "vertical-cross", "exr")
+CUBE_LAYOUTS = ("faces", "cross", "vertical-cross", "row", "column", "exr")
+CUBE_SPACES = ("world", "flip-x", "flip-z")
 COLOUR_SPACES = ("lin_rec709", "acescg", "lin_rec2020", "lin_p3d65", "aces2065-1", "xyz")
 UNITS = ("ev15", "nits")
-PIXELS = ("auto", "half", "float")
-SUN_DISCS = ("include", "exclude", "only")
+PIXELS = ("auto", "half", "float", "rgb9e5", "r11g11b10")
+CUBE_SUFFIXES = (".ktx2", ".dds")
+MAP_SUFFIXES = (".exr", ".hdr", *CUBE_SUFFIXES)
+SUN_DISCS = ("include", "exclude", "only", "separate")
 METHODS = ("full", "hillaire", "march")
 CLOUD_QUALITIES = ("draft", "normal", "high")
 VIEWS = ("aces1", "aces2")

@@ -8,18 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from skybake.constants import ASTRONOMICAL_UNIT
+from skybake.units import degrees
 
 if TYPE_CHECKING:
     from skybake.baking import Baked
     from skybake.ephemeris.moment import Moment
     from skybake.image.settings import MapSettings
-    from skybake.preset import Planet
 
 
-def print_summary(baked: Baked, seconds: float) -> None:
+def print_summary(baked: Baked, settings: MapSettings, seconds: float) -> None:
     """Print files and illuminances, human-readable."""
-    for path in baked.files:
+    for path in (*baked.files, *baked.light_files):
         click.echo(path)
     if baked.preview is not None and baked.preview_ev is not None:
         from skybake.commands.printing.pictures import picture_line
@@ -32,41 +31,81 @@ def print_summary(baked: Baked, seconds: float) -> None:
     )
     if baked.clamped:
         click.echo(f"{baked.clamped} negative values, out of gamut, were stored as 0")
+    for line in target_lines(settings):
+        click.echo(line)
 
 
-def print_json(
-    baked: Baked, planet: Planet, settings: MapSettings, seconds: float, when: Moment | None
-) -> None:
-    """Print one JSON object on one line."""
-    click.echo(json.dumps(result(baked, planet, settings, seconds, when)))
+def target_lines(settings: MapSettings) -> list[str]:
+    """Return a line on where things are in the program that a map is for, if it is for one."""
+    name = settings.encoding.target
+    if name is None:
+        return []
+    from skybake.image.target import find_target
+    from skybake.image.target_sun import target_sun_direction
+
+    axes = find_target(name).axes
+    x, y, z = target_sun_direction(settings, name)
+    left_out = ", which needs a light of its own" if settings.lighting.sun_disc == "exclude" else ""
+    return [
+        f"{name}: {axes.east} is east, {axes.north} north, {axes.up} up; "
+        f"toward the sun ({x:.4f}, {y:.4f}, {z:.4f}){left_out}"
+    ]
+
+
+def print_json(baked: Baked, settings: MapSettings, seconds: float, when: Moment | None) -> None:
+    """Print one JSON object on one line, of a map whose `Baked.map_light` is known."""
+    click.echo(json.dumps(result(baked, settings, seconds, when)))
 
 
 def result(
-    baked: Baked, planet: Planet, settings: MapSettings, seconds: float, when: Moment | None
+    baked: Baked, settings: MapSettings, seconds: float, when: Moment | None
 ) -> dict[str, Any]:
-    """Return what ``--json`` prints, see docs/cli.md."""
-    from skybake.optics.spectrum import star_at
+    """Return what ``--json`` prints, see docs/cli.md.
 
-    lighting = settings.lighting
-    star = star_at(planet.star, lighting.sun_distance)
+    Raises
+    ------
+    ValueError
+        If `Baked.map_light` is not known.
+    """
+    light = baked.map_light
+    if light is None:
+        raise ValueError("light: must be known, got None")
     return {
         "files": [str(path) for path in baked.files],
-        "preset": planet.name,
+        "preset": light.preset,
         "time": None if when is None else when.attributes.get("skybake:time"),
         "sun_direction": list(baked.sun_direction),
-        "sun_distance_au": star.distance / ASTRONOMICAL_UNIT,
-        "sun_angular_diameter_deg": math.degrees(lighting.sun_size or 2.0 * star.angular_radius),
+        **_target(settings),
+        "sun_azimuth_deg": degrees(light.sun_azimuth),
+        "sun_elevation_deg": degrees(light.sun_elevation),
+        "sun_distance_au": light.sun_distance,
+        "sun_angular_diameter_deg": math.degrees(light.sun_angular_diameter),
+        "sun_colour": list(light.sun_colour_in_map),
+        "sun_colour_temperature_k": light.sun_temperature,
+        "sun_irradiance": list(light.sun_irradiance),
         "direct_illuminance_lux": baked.direct_illuminance,
         "direct_normal_illuminance_lux": baked.direct_normal_illuminance,
         "sky_illuminance_lux": baked.sky_illuminance,
         "white_luminance_cd_m2": baked.white_luminance,
-        "projection": settings.view.projection.name,
-        "colorspace": settings.encoding.colorspace,
+        "exposure_ev": light.exposure_ev,
+        "projection": light.projection,
+        "colorspace": light.colorspace,
+        "sun_disc": light.sun_disc,
         "pixel": baked.pixel,
         "clamped": baked.clamped,
         "warnings": list(baked.warnings),
+        "lights": [str(path) for path in baked.light_files],
         "preview": None if baked.preview is None else str(baked.preview),
         "preview_ev": baked.preview_ev,
         "preview_white": None if baked.preview_white is None else list(baked.preview_white),
         "seconds": round(seconds, 3),
     }
+
+
+def _target(settings: MapSettings) -> dict[str, Any]:
+    name = settings.encoding.target
+    if name is None:
+        return {"target": None, "target_sun_direction": None}
+    from skybake.image.target_sun import target_sun_direction
+
+    return {"target": name, "target_sun_direction": list(target_sun_direction(settings, name))}

@@ -1,7 +1,7 @@
-"""A sequence as lights of USD: a dome with the maps as texture, and the sun as a distant light.
+"""Maps as lights of USD: a dome with a map as texture, and the sun as a distant light.
 
 Both share one unit, the maps' white: the dome's texel of 1 and the sun's intensity
-of 1 stand for `FrameRecord.white_luminance_cd_m2`, in cd/m2 and in lux. USD orients
+of 1 stand for `DomeAndSun.white_luminance_cd_m2`, in cd/m2 and in lux. USD orients
 lat-long textures as OpenEXR does (UsdLuxDomeLight's documentation), and so do our maps,
 so that the dome needs no rotation.
 """
@@ -10,20 +10,77 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from skybake.colour.space import find_colour_space
 from skybake.errors import InputError
 from skybake.formats.targets import check_target
-from skybake.formats.whole_files import replace_when_whole
+from skybake.formats.text import is_plain_line
 from skybake.projection import PROJECTIONS
-from skybake.sequence.manifest import FrameRecord, SequenceHeader, ascending
-from skybake.sequence.text import is_plain_line
+from skybake.version import __version__
 
 _SUN_IS_IN_MAPS = (
     "Not active, because the maps on the dome hold the sun's disc already. To have it sampled as "
     "a light instead, bake the maps without the disc."
 )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Common:
+    """What all maps of a layer have in common.
+
+    Attributes
+    ----------
+    preset : str
+        Name of the world.
+    colorspace : str
+        A name of `skybake.colour.space.COLOUR_SPACES`.
+    sun_is_in_maps : bool
+        Whether the maps hold the sun's disc, so that its light is to stay off.
+    rotation_deg : float
+        Compass bearing that the maps' -Z looks to. [deg]
+    fps : float
+        Frames per second.
+    """
+
+    preset: str
+    colorspace: str
+    sun_is_in_maps: bool
+    rotation_deg: float = 0.0
+    fps: float = 24.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class DomeAndSun:
+    """The lights of one map.
+
+    Attributes
+    ----------
+    file : str
+        The map, as seen from the layer's folder.
+    frame : int or None
+        Its time code; None of a map that does not change.
+    white_luminance_cd_m2 : float
+        Luminance that a pixel value of 1 stands for. [cd m⁻²]
+    sun_elevation_deg, sun_azimuth_deg : float
+        Geometric elevation of the sun's centre, and its compass bearing. [deg]
+    sun_angular_diameter_deg : float
+        Of its disc. [deg]
+    sun_colour : tuple of 3 float
+        Of the sun's light, linear Rec. 709 of luminance 1; any if it gives none.
+    sun_illuminance_lux : float
+        On a plane that faces the sun. [lx]
+    """
+
+    file: str
+    frame: int | None = None
+    white_luminance_cd_m2: float
+    sun_elevation_deg: float
+    sun_azimuth_deg: float
+    sun_angular_diameter_deg: float
+    sun_colour: tuple[float, float, float]
+    sun_illuminance_lux: float
 
 
 def check_usd(path: Path, projection: str, files: Iterable[str] = ()) -> None:
@@ -58,46 +115,37 @@ def check_usd(path: Path, projection: str, files: Iterable[str] = ()) -> None:
     check_target(path)
 
 
-def write_usd(path: Path, header: SequenceHeader, records: Iterable[FrameRecord]) -> None:
-    """Write a sequence as USD's lights with time samples.
+def usd_layer(path: Path, common: Common, rows: Sequence[DomeAndSun]) -> str:
+    """Return a layer of USD with the lights of maps.
 
     Parameters
     ----------
     path : Path
-        ``.usda``, in the folder that the records' files are seen from.
-    header : SequenceHeader
-        What all frames have in common.
-    records : iterable of FrameRecord
-        At least one, in any order.
+        ``.usda`` that it is for, in the folder that the maps are seen from.
+    common : Common
+        What all maps have in common.
+    rows : sequence of DomeAndSun
+        Ascending frames; the only one may have none.
 
     Raises
     ------
     InputError
-        As `check_usd`.
-    OutputError
-        If the file cannot be written.
+        If USD cannot hold the name of a map.
     """
-    rows = ascending(records)
-    check_usd(path, header.projection, (row.files[0] for row in rows))
-    lines = [*_layer(header, rows), *_dome(path, header, rows), "", *_sun(header, rows), "}"]
-    with replace_when_whole(path) as temporary:
-        temporary.write_text("\n".join(lines) + "\n", "utf-8")
+    lines = [*_layer(common, rows), *_dome(path, common, rows), "", *_sun(common, rows), "}"]
+    return "\n".join(lines) + "\n"
 
 
-def _layer(header: SequenceHeader, rows: Sequence[FrameRecord]) -> Iterator[str]:
+def _layer(common: Common, rows: Sequence[DomeAndSun]) -> Iterator[str]:
     about = (
-        f"Sky of {header.preset} by skybake {header.skybake}. The sun's intensity is its "
+        f"Sky of {common.preset} by skybake {__version__}. The sun's intensity is its "
         "illuminance over skybake:whiteLuminance, which is the luminance of a texel of 1."
     )
     yield "#usda 1.0"
     yield "("
     yield '    defaultPrim = "World"'
     yield f"    doc = {_quoted(about)}"
-    yield f"    endTimeCode = {rows[-1].frame}"
-    yield f"    framesPerSecond = {header.fps:.9g}"
-    yield "    metersPerUnit = 1"
-    yield f"    startTimeCode = {rows[0].frame}"
-    yield f"    timeCodesPerSecond = {header.fps:.9g}"
+    yield from _clock(common, rows)
     yield '    upAxis = "Y"'
     yield ")"
     yield ""
@@ -111,35 +159,46 @@ def _layer(header: SequenceHeader, rows: Sequence[FrameRecord]) -> Iterator[str]
     yield ""
 
 
-def _dome(path: Path, header: SequenceHeader, rows: Sequence[FrameRecord]) -> Iterator[str]:
-    space = find_colour_space(header.colorspace).interop_id
+def _clock(common: Common, rows: Sequence[DomeAndSun]) -> Iterator[str]:
+    if rows[0].frame is None:
+        yield "    metersPerUnit = 1"
+        return
+    yield f"    endTimeCode = {rows[-1].frame}"
+    yield f"    framesPerSecond = {common.fps:.9g}"
+    yield "    metersPerUnit = 1"
+    yield f"    startTimeCode = {rows[0].frame}"
+    yield f"    timeCodesPerSecond = {common.fps:.9g}"
+
+
+def _dome(path: Path, common: Common, rows: Sequence[DomeAndSun]) -> Iterator[str]:
+    space = find_colour_space(common.colorspace).interop_id
     yield '    def DomeLight "Sky"'
     yield "    {"
     yield "        float inputs:intensity = 1"
-    yield "        asset inputs:texture:file ("
-    yield f"            colorSpace = {_quoted(space)}"
-    yield "        )"
     yield from _samples(
-        "        asset inputs:texture:file", rows, lambda row: _asset(path, row.files[0])
+        "        asset inputs:texture:file",
+        rows,
+        lambda row: _asset(path, row.file),
+        colour_space=space,
     )
     yield '        token inputs:texture:format = "latlong"'
     yield "    }"
 
 
-def _sun(header: SequenceHeader, rows: Sequence[FrameRecord]) -> Iterator[str]:
+def _sun(common: Common, rows: Sequence[DomeAndSun]) -> Iterator[str]:
     yield '    def DistantLight "Sun"'
-    if header.sun_disc != "exclude":
+    if common.sun_is_in_maps:
         yield "    ("
         yield "        active = false"
         yield f"        doc = {_quoted(_SUN_IS_IN_MAPS)}"
         yield "    )"
     yield "    {"
     yield from _angle(rows)
-    yield "        color3f inputs:color ("
-    yield '            colorSpace = "lin_rec709_scene"'
-    yield "        )"
     yield from _samples(
-        "        color3f inputs:color", rows, lambda row: _triple(*_colour_of_light(row))
+        "        color3f inputs:color",
+        rows,
+        lambda row: _triple(*_colour_of_light(row)),
+        colour_space="lin_rec709_scene",
     )
     yield from _samples(
         "        float inputs:intensity",
@@ -147,7 +206,7 @@ def _sun(header: SequenceHeader, rows: Sequence[FrameRecord]) -> Iterator[str]:
         lambda row: f"{row.sun_illuminance_lux / row.white_luminance_cd_m2:.9g}",
     )
     yield "        bool inputs:normalize = 1"
-    bearing = dict(zip((row.frame for row in rows), _steady_bearings(header, rows), strict=True))
+    bearing = dict(zip((row.frame for row in rows), _steady_bearings(common, rows), strict=True))
     # The light comes from +Z of its own axes: tilted up, then turned to the bearing.
     yield from _samples(
         "        float3 xformOp:rotateXYZ",
@@ -158,7 +217,7 @@ def _sun(header: SequenceHeader, rows: Sequence[FrameRecord]) -> Iterator[str]:
     yield "    }"
 
 
-def _angle(rows: Sequence[FrameRecord]) -> Iterator[str]:
+def _angle(rows: Sequence[DomeAndSun]) -> Iterator[str]:
     """Size of the sun's disc, which changes where its distance follows the date."""
     angles = [f"{row.sun_angular_diameter_deg:.9g}" for row in rows]
     if len(set(angles)) == 1:
@@ -170,26 +229,38 @@ def _angle(rows: Sequence[FrameRecord]) -> Iterator[str]:
 
 
 def _samples(
-    declaration: str, rows: Sequence[FrameRecord], value: Callable[[FrameRecord], str]
+    declaration: str,
+    rows: Sequence[DomeAndSun],
+    value: Callable[[DomeAndSun], str],
+    colour_space: str | None = None,
 ) -> Iterator[str]:
+    """Declare an attribute by time, or with the one value of a map that does not change."""
     indent = " " * (len(declaration) - len(declaration.lstrip()))
-    yield f"{declaration}.timeSamples = {{"
-    for row in rows:
-        yield f"{indent}    {row.frame}: {value(row)},"
-    yield f"{indent}}}"
+    space = f"{indent}    colorSpace = {_quoted(colour_space)}" if colour_space else ""
+    if rows[0].frame is None:
+        yield f"{declaration} = {value(rows[0])}" + (" (" if space else "")
+    elif space:
+        yield f"{declaration} ("
+    if space:
+        yield space
+        yield f"{indent})"
+    if rows[0].frame is not None:
+        yield f"{declaration}.timeSamples = {{"
+        for row in rows:
+            yield f"{indent}    {row.frame}: {value(row)},"
+        yield f"{indent}}}"
 
 
-def _colour_of_light(row: FrameRecord) -> tuple[float, float, float]:
+def _colour_of_light(row: DomeAndSun) -> tuple[float, float, float]:
     return row.sun_colour if row.sun_illuminance_lux > 0.0 else (1.0, 1.0, 1.0)
 
 
-def _steady_bearings(header: SequenceHeader, rows: Sequence[FrameRecord]) -> Iterator[float]:
+def _steady_bearings(common: Common, rows: Sequence[DomeAndSun]) -> Iterator[float]:
     """Bearings of the sun on the maps, without a jump at north that would be interpolated. [deg]"""
-    rotation = header.recipe.get("map", {}).get("rotate_deg", 0.0)
     bearing = rows[0].sun_azimuth_deg
     for row in rows:
         bearing += math.remainder(row.sun_azimuth_deg - bearing, 360.0)
-        yield bearing - rotation
+        yield bearing - common.rotation_deg
 
 
 def _triple(x: float, y: float, z: float) -> str:

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from pxr import Gf, Sdf, Usd, UsdGeom, UsdLux, UsdValidation
+from pxr import Gf, Usd, UsdGeom, UsdLux, UsdValidation
 
 import skybake
 from skybake.colour.space import COLOUR_SPACES, rgb_from_xyz
@@ -13,17 +13,34 @@ from skybake.errors import InputError, OutputError
 from skybake.formats.reader import read_image
 from skybake.image.settings import map_settings
 from skybake.projection import equirect
-from skybake.sequence.usd import check_usd, write_usd
-from tests.sequence.records import HEADER, direction, record
+from skybake.sidecar.usd import Common, DomeAndSun, check_usd, usd_layer
+from tests.sequence.records import direction
 
 SUNS = [(-3.0, 250.0), (0.0, 359.0), (5.0, 2.0), (33.0, 90.0), (89.0, 200.0), (90.0, 180.0)]
 
 
+COMMON = Common(preset="earth", colorspace="acescg", sun_is_in_maps=False)
+
+
+def record(frame, elevation=30.0, azimuth=180.0, **changes):
+    values = {
+        "file": "sky.0001.exr",
+        "frame": frame,
+        "white_luminance_cd_m2": 39321.6,
+        "sun_elevation_deg": elevation,
+        "sun_azimuth_deg": azimuth,
+        "sun_angular_diameter_deg": 0.533,
+        "sun_colour": (1.2, 0.98, 0.61),
+        "sun_illuminance_lux": 90000.0,
+    }
+    return DomeAndSun(**{**values, **changes})
+
+
 @pytest.fixture
 def written(tmp_path):
-    def write(records, **changes):
-        path = tmp_path / "sky.usda"
-        write_usd(path, dataclasses.replace(HEADER, **changes), records)
+    def write(records, name="sky", **changes):
+        path = tmp_path / f"{name}.usda"
+        path.write_text(usd_layer(path, dataclasses.replace(COMMON, **changes), records))
         return Usd.Stage.Open(str(path))
 
     return write
@@ -55,7 +72,7 @@ def _seen_at(stage, frame, u, v):
 
 
 def test_the_stage_says_its_axes_units_and_time(written):
-    stage = written([record(12), record(-3), record(5)])
+    stage = written([record(-3), record(5), record(12)])
     assert UsdGeom.GetStageUpAxis(stage) == "Y"
     assert UsdGeom.GetStageMetersPerUnit(stage) == 1.0
     assert (stage.GetStartTimeCode(), stage.GetEndTimeCode()) == (-3.0, 12.0)
@@ -83,8 +100,7 @@ def test_light_comes_from_the_sun(written, elevation, azimuth):
 
 
 def test_light_comes_from_the_sun_of_a_map_that_is_turned(written):
-    recipe = {"map": {"width": 64, "rotate_deg": 40.0}, "preset": {"name": "earth"}}
-    stage = written([record(7, 33.0, 90.0), record(8, 33.0, 20.0)], recipe=recipe)
+    stage = written([record(7, 33.0, 90.0), record(8, 33.0, 20.0)], rotation_deg=40.0)
     np.testing.assert_allclose(_comes_from(stage, 7), direction(33.0, 50.0), atol=1e-6)
     np.testing.assert_allclose(_comes_from(stage, 8), direction(33.0, -20.0), atol=1e-6)
 
@@ -141,7 +157,7 @@ def test_maps_are_sampled_by_frame_and_found_beside_the_file(written, tmp_path):
     files = {1: "maps/sky.0001.exr", 6: "maps/sky@half.0006.exr", 11: "maps/sky é.0011.exr"}
     for file in files.values():
         (tmp_path / file).touch()
-    stage = written([record(frame, files=(file,)) for frame, file in files.items()])
+    stage = written([record(frame, file=file) for frame, file in files.items()])
     texture = UsdLux.DomeLight(stage.GetPrimAtPath("/World/Sky")).GetTextureFileAttr()
     assert texture.GetTimeSamples() == [1.0, 6.0, 11.0]
     for frame, file in files.items():
@@ -190,9 +206,9 @@ def test_between_frames_the_sun_crosses_north_on_the_shorter_way(written):
     np.testing.assert_allclose(_comes_from(stage, 16), direction(10.0, 350.0), atol=1e-6)
 
 
-@pytest.mark.parametrize("disc", ["include", "only"])
-def test_a_sun_that_the_maps_hold_is_not_counted_twice(written, disc):
-    stage = written([record(1)], sun_disc=disc)
+@pytest.mark.parametrize("frame", [1, None])
+def test_a_sun_that_the_maps_hold_is_not_counted_twice(written, frame):
+    stage = written([record(frame)], sun_is_in_maps=True)
     sun = stage.GetPrimAtPath("/World/Sun")
     assert not sun.IsActive()
     assert "hold the sun's disc already" in sun.GetMetadata("documentation")
@@ -200,7 +216,7 @@ def test_a_sun_that_the_maps_hold_is_not_counted_twice(written, disc):
     sun.SetActive(True)
     light = UsdLux.LightAPI(stage.GetPrimAtPath("/World/Sun"))
     assert light.GetIntensityAttr().Get(1) == pytest.approx(90000.0 / 39321.6)
-    assert written([record(1)]).GetPrimAtPath("/World/Sun").IsActive()
+    assert written([record(frame)]).GetPrimAtPath("/World/Sun").IsActive()
 
 
 def test_pixars_validators_find_no_fault(written, tmp_path):
@@ -231,12 +247,23 @@ def test_what_usd_cannot_hold_is_said_up_front(tmp_path, name, projection, fault
         check_usd(tmp_path / name, projection)
 
 
-def test_a_name_that_usd_cannot_hold_leaves_the_file_as_it_was(tmp_path):
-    path = tmp_path / "sky.usda"
-    write_usd(path, HEADER, [record(1)])
-    before = path.read_bytes()
+def test_a_name_that_usd_cannot_hold_is_refused(tmp_path):
     for name in ("a\nb.exr", "a\udcff.exr", "a@@@.exr"):
         with pytest.raises(InputError, match="USD must be able to hold"):
-            write_usd(path, HEADER, [record(1, files=(name,))])
-    assert path.read_bytes() == before
-    assert Sdf.Layer.FindOrOpen(str(path)) is not None
+            usd_layer(tmp_path / "sky.usda", COMMON, [record(1, file=name)])
+
+
+def test_a_map_without_a_frame_has_the_same_lights_at_every_time(written):
+    sampled = written([record(7, 33.0, 90.0)])
+    plain = written([record(None, 33.0, 90.0)], "plain")
+    assert not plain.HasAuthoredTimeCodeRange()
+    for prim in sampled.Traverse():
+        twin = plain.GetPrimAtPath(prim.GetPath())
+        assert twin.GetTypeName() == prim.GetTypeName()
+        names = [one.GetName() for one in prim.GetAuthoredAttributes()]
+        assert names == [one.GetName() for one in twin.GetAuthoredAttributes()]
+        for name in names:
+            one, other = prim.GetAttribute(name), twin.GetAttribute(name)
+            assert other.GetTimeSamples() == []
+            assert other.Get() == one.Get(7)
+            assert other.GetColorSpace() == one.GetColorSpace()

@@ -1,0 +1,95 @@
+"""The pictures that make up a map, each with what its rows show and what writes them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+from skybake.formats.cube_file import is_cube_file
+from skybake.formats.spec import MapSpec
+from skybake.formats.whole_files import WholeFiles
+from skybake.formats.writer import RowWriter, open_maps
+from skybake.image.layers import Pixels
+from skybake.image.parts import part_names
+from skybake.image.raster import Raster
+from skybake.image.scene import Scene
+
+Band = Pixels | tuple[Pixels, ...]
+
+
+class Picture(NamedTuple):
+    """A picture of a map that is being written.
+
+    Attributes
+    ----------
+    height : int
+        Its rows.
+    rows : callable
+        Returns the pixels of rows first..last, or those of each part of the file.
+    writer : RowWriter
+        What they are written with.
+    """
+
+    height: int
+    rows: Callable[[int, int], Band]
+    writer: RowWriter
+
+
+@contextmanager
+def open_pictures(
+    scene: Scene,
+    rasters: Sequence[Raster],
+    paths: Sequence[Path],
+    spec: Callable[[Raster], MapSpec],
+    files: WholeFiles,
+) -> Iterator[list[Picture]]:
+    """Open the files of a map for rows from top to bottom.
+
+    Parameters
+    ----------
+    scene : Scene
+        What the map shows.
+    rasters : sequence of Raster
+        Its pictures.
+    paths : sequence of Path
+        Its files: one for each picture, or one for all.
+    spec : callable
+        Returns what the file of a picture holds besides.
+    files : WholeFiles
+        The set that they are to appear with.
+
+    Yields
+    ------
+    list of Picture
+        In the order of `rasters`; when the block ends all rows must have been written.
+
+    Raises
+    ------
+    InputError, OutputError
+        As `skybake.formats.writer.open_maps`.
+    """
+    settings = scene.settings
+    if is_cube_file(paths[0]) or settings.encoding.mips:
+        from skybake.baking.held_pictures import HeldRows, write_held
+
+        held = [HeldRows(raster.canvas.width, raster.canvas.height) for raster in rasters]
+        yield [_picture(raster, one) for raster, one in zip(rasters, held, strict=True)]
+        specs = [spec(raster) for raster in rasters]
+        write_held(held, paths, specs, settings, files, scene.workers)
+        return
+    names = part_names(scene)
+    if len(names) > 1:
+        from skybake.baking.parts import open_parts
+
+        with open_parts(scene, names, rasters, paths, spec, files) as pictures:
+            yield pictures
+        return
+    each = {path: spec(raster) for path, raster in zip(paths, rasters, strict=True)}
+    with open_maps(each, files) as writers:
+        yield [_picture(raster, writers[path]) for raster, path in zip(rasters, each, strict=True)]
+
+
+def _picture(raster: Raster, writer: RowWriter) -> Picture:
+    return Picture(raster.canvas.height, raster.rows, writer)

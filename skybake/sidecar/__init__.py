@@ -1,0 +1,1 @@
+"""Files beside maps that tell other programs what lights a scene."""

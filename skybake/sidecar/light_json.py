@@ -1,0 +1,58 @@
+"""The light of a map as JSON, for programs and scripts that have a reader of no other format."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+
+from skybake.sidecar.map_light import MapLight
+from skybake.units import degrees
+from skybake.version import __version__
+
+SCHEMA = 1
+"""Incremented when a key changes its meaning or is removed."""
+
+
+def light_json(light: MapLight, files: Sequence[str], time: str | None = None) -> str:
+    """Return the light of a map as JSON, see docs/formats.md.
+
+    Parameters
+    ----------
+    light : MapLight
+        Of a map of any kind.
+    files : sequence of str
+        The map, one file or six, as seen from the folder of the JSON.
+    time : str, optional
+        ISO 8601 in UTC.
+    """
+    document = {
+        "schema": SCHEMA,
+        "skybake": __version__,
+        "preset": light.preset,
+        "time": time,
+        "map": {
+            "files": list(files),
+            "projection": light.projection,
+            "rotate_deg": degrees(light.rotation),
+            "colorspace": light.colorspace,
+            "white_luminance_cd_m2": light.white_luminance,
+            "sun_disc": light.sun_disc,
+        },
+        "sun": {
+            "is_in_map": light.sun_is_in_map,
+            "direction": light.sun_direction,
+            "azimuth_deg": degrees(light.sun_azimuth),
+            "elevation_deg": degrees(light.sun_elevation),
+            "distance_au": light.sun_distance,
+            "angular_diameter_deg": math.degrees(light.sun_angular_diameter),
+            "illuminance_lux": light.direct_normal_illuminance,
+            "horizontal_illuminance_lux": light.direct_illuminance,
+            "colour": light.sun_colour_in_map,
+            "colour_temperature_k": light.sun_temperature,
+            "irradiance": light.sun_irradiance,
+        },
+        "sky": {"horizontal_illuminance_lux": light.sky_illuminance},
+        "exposure_ev": light.exposure_ev,
+    }
+    return json.dumps(document, indent=2, allow_nan=False) + "\n"
