@@ -10,9 +10,8 @@ import numpy.typing as npt
 
 from skybake.cloud_fields.chart import chart_stretch, cloud_place, plane_place
 from skybake.cloud_fields.field import detail_at, detailed_clearance, detailed_extinction
-from skybake.clouds.harmonics import fill_harmonics
-from skybake.clouds.light import fill_corners, fill_diffuse, sun_depth, sun_share
-from skybake.clouds.particles import DEEPEST, TERMS
+from skybake.clouds.particles import TERMS
+from skybake.clouds.source import fill_source, prepare_ray
 from skybake.jit.kernel import kernel
 from skybake.optics.medium import Array
 
@@ -30,9 +29,6 @@ SHARED = 0.08
 
 SIMILAR = 1.02
 """Ratio of blurs that are not told apart."""
-
-DARK = 7.0
-"""Optical depth toward the sun, without forward peaks, beyond which its rest does not matter."""
 
 THINNEST = 0.02
 """Extinction below which there is no cloud. [km⁻¹]"""
@@ -141,7 +137,7 @@ def fill_march(
         end = _exit(radius, altitude, dz, field.base, field.top, begin)
         if end <= begin:
             continue
-        place = _look(light, radius, altitude, directions[n], sun, begin, scratch)
+        place = prepare_ray(light, radius, altitude, directions[n], sun, begin, scratch)
         # Farther from the observer the plane is stretched more.
         far = end * dx, end * dy, altitude + end * dz
         stretch = chart_stretch(field, radius, far[0], far[1], far[2])
@@ -195,7 +191,9 @@ def fill_march(
                 # Light between two looks is the mean of both.
                 _add(scratch.source, 0.5 * due, seen[n])
                 to_eye = depth + 0.5 * extinction * step
-                _look_up(field, light, marching, place, x, y, h, detail, erosion, to_eye, scratch)
+                fill_source(
+                    field, light, marching, place, x, y, h, detail, erosion, to_eye, scratch
+                )
                 _add(scratch.source, 0.5 * due + weight, seen[n])
                 due, is_new = 0.0, False
             else:
@@ -220,119 +218,9 @@ def fill_march(
 
 
 @kernel
-def _depth_to_sun(field, light, marching, place, x, y, h, detail, erosion, scratch):
-    """Optical depth toward the sun without forward peaks; leaves the point's own corners."""
-    corner, weight = scratch.corner, scratch.weight
-    if marching.taps == 0:
-        fill_corners(light, x, y, h, corner, weight)
-        return sun_depth(light, place, corner, weight)
-    toward = scratch.local[1]
-    east, north, up = toward[0], toward[1], toward[2]
-    s = marching.reach
-    fill_corners(light, x + s * east, y + s * north, h + s * up, corner, weight)
-    depth = sun_depth(light, place, corner, weight)
-    if depth < DARK:
-        near = 0.0
-        for q in range(marching.taps):
-            s = marching.reach * (q + 0.5) / marching.taps
-            px, py, pz = x + s * east, y + s * north, h + s * up
-            near += detailed_extinction(field, px, py, pz, detail, erosion)
-        depth += near * marching.reach / marching.taps * (1.0 - light.fraction)
-    fill_corners(light, x, y, h, corner, weight)
-    return depth
-
-
-@kernel
-def _look_up(field, light, marching, place, x, y, h, detail, erosion, to_eye, scratch):
-    """Write what a point sends to the eye, of the sun and of diffuse light, by its opacity.
-
-    `to_eye` is the depth of all particles, those of peaks included.
-    """
-    toward_sun = _depth_to_sun(field, light, marching, place, x, y, h, detail, erosion, scratch)
-    fill_diffuse(
-        light,
-        place,
-        scratch.corner,
-        scratch.weight,
-        scratch.toward,
-        scratch.moments,
-        scratch.source,
-    )
-    keep = 1.0 - light.fraction
-    to_sun = toward_sun / keep
-    sharp = math.exp(-light.fraction * (to_sun + to_eye)) / keep
-    beam = math.exp(-toward_sun)
-    series = min(to_sun, DEEPEST)
-    fz = (h - light.base) / light.spacing[0] - 0.5
-    for c in range(scratch.source.size):
-        peak = scratch.peak[c, TERMS - 1]
-        for q in range(TERMS - 2, -1, -1):
-            peak = peak * series + scratch.peak[c, q]
-        lit = _irradiance(light, place, fz, c) * beam
-        scratch.source[c] += lit * (scratch.truncated[c] + sharp * peak)
-
-
-@kernel
 def _add(source, weight, out):
     for c in range(source.size):
         out[c] += weight * source[c]
-
-
-@kernel
-def _look(light, radius, altitude, direction, sun, distance, scratch):
-    """Prepare what holds along a ray: phase functions, and harmonics where it enters the layer."""
-    px, py = distance * direction[0], distance * direction[1]
-    pz = altitude + distance * direction[2] + radius
-    r = math.sqrt(px * px + py * py + pz * pz)
-    ux, uy, uz = px / r, py / r, pz / r
-    # The tile's axes are the observer's, turned by the shortest way to the local vertical.
-    for which in range(2):
-        source = direction if which == 0 else sun
-        x, y, z = source[0], source[1], source[2]
-        along = x * ux + y * uy + z * uz
-        both = (along + z) / (1.0 + uz)
-        local = scratch.local[which]
-        local[0], local[1] = x - both * ux, y - both * uy
-        local[2] = along
-    local = scratch.local[0]
-    fill_harmonics(-local[0], -local[1], -local[2], light.order, scratch.harmonic)
-    for p in range(scratch.harmonic.size):
-        scratch.toward[p] = light.scatter[p] * scratch.harmonic[p]
-    nu = direction[0] * sun[0] + direction[1] * sun[1] + direction[2] * sun[2]
-    angles = light.truncated.shape[0]
-    middle = angles // 2
-    if nu > 0.0:
-        place = middle * math.sqrt(math.sqrt(max(1.0 - nu, 0.0)))
-    else:
-        place = 2 * middle - middle * math.sqrt(math.sqrt(max(1.0 + nu, 0.0)))
-    i = min(int(place), angles - 2)
-    u = place - i
-    for c in range(scratch.truncated.size):
-        low, high = light.truncated[i, c], light.truncated[i + 1, c]
-        scratch.truncated[c] = low + u * (high - low)
-        for q in range(TERMS):
-            low, high = light.peak[i, c, q], light.peak[i + 1, c, q]
-            scratch.peak[c, q] = low + u * (high - low)
-    return sun_share(light, scratch.local[1, 2])
-
-
-@kernel
-def _irradiance(light, place, fz, channel):
-    """Irradiance by the sun between levels and suns."""
-    levels = light.irradiance.shape[1]
-    z = min(max(fz, 0.0), levels - 1.0)
-    k = min(int(z), max(levels - 2, 0))
-    w = z - k
-    first = int(place)
-    share = place - first
-    upper = min(k + 1, levels - 1)
-    low, high = light.irradiance[first, k, channel], light.irradiance[first, upper, channel]
-    value = low + w * (high - low)
-    if share > 0.0:
-        low = light.irradiance[first + 1, k, channel]
-        high = light.irradiance[first + 1, upper, channel]
-        value += share * (low + w * (high - low) - value)
-    return value
 
 
 @kernel
