@@ -1,7 +1,8 @@
-"""Makes the pictures of clouds.md: ``python docs/make_clouds.py``, in some minutes.
+"""Makes the pictures of clouds.md and the first of the README: ``python docs/make_clouds.py``.
 
-Each sky as an equirect map and as a camera sees it, exposed by itself. Another quality than
-``normal`` may follow, as ``draft``, and names of sheets, if not all are to be made. Needs Pillow.
+Each sky as an equirect map and as a camera sees it, or in the README's strip as a camera sees it
+alone, exposed by itself; in some minutes. Another quality than ``normal`` may follow, as ``draft``,
+and names of sheets, if not all are to be made. Needs Pillow.
 """
 
 from __future__ import annotations
@@ -83,17 +84,29 @@ SHEETS = {
 }
 
 
+STRIP = "clouds-strip"
+STRIP_SHOTS = {
+    "earth-fair, sun at 20 deg": Shot("earth-fair", 20.0, (130.0, 14.0, 70.0)),
+    "earth-cirrus, sun at 4 deg": Shot("earth-cirrus", 4.0, (170.0, 17.0, 75.0)),
+    "mars, sun at 6 deg": Shot("mars", 6.0, (180.0, 12.0, 75.0)),
+}
+
+
 def main(quality: str = "normal", *names: str) -> None:
     """Draw each sheet and write it."""
-    for name in names or SHEETS:
+    for name in names or (STRIP, *SHEETS):
+        if name == STRIP:
+            tiles = {title: pictures(shot, quality)[1:] for title, shot in STRIP_SHOTS.items()}
+            sheet(tiles, len(tiles)).save(IMAGES / f"{name}.jpg", quality=LOSSY, optimize=True)
+            continue
         tiles = {}
         for title, shot in SHEETS[name].items():
             tiles[title] = pictures(shot, quality)
             print(title, flush=True)
-        sheet(tiles).save(IMAGES / f"{name}.jpg", quality=LOSSY, optimize=True)
+        sheet(tiles, COLUMNS).save(IMAGES / f"{name}.jpg", quality=LOSSY, optimize=True)
 
 
-def pictures(shot: Shot, quality: str) -> tuple[Image.Image, Image.Image]:
+def pictures(shot: Shot, quality: str) -> tuple[Image.Image, ...]:
     """Return the map of a sky and a camera's view of it, of which light is solved for once."""
     bearing, elevation, width = map(math.radians, shot.look)
     view = skybake.Perspective(*SHOT, fov=width, azimuth=bearing, elevation=elevation)
@@ -111,7 +124,7 @@ def pictures(shot: Shot, quality: str) -> tuple[Image.Image, Image.Image]:
     ):
         codes = thumbnail(scene, picture_ev(scene, look), look, columns)
         shown.append(Image.fromarray(codes))
-    return shown[0], shown[1]
+    return tuple(shown)
 
 
 def world(shot: Shot) -> skybake.Planet:
@@ -124,18 +137,19 @@ def world(shot: Shot) -> skybake.Planet:
         return skybake.load_preset(preset)
 
 
-def sheet(tiles: dict[str, tuple[Image.Image, Image.Image]]) -> Image.Image:
-    """Paste pictures in rows, each a map and a view, below their titles."""
-    width = 2 * HEIGHT + GAP + SHOT[0] + 2 * GAP
-    rows = math.ceil(len(tiles) / COLUMNS)
-    size = COLUMNS * width + GAP, rows * (HEIGHT + LINE + GAP) + GAP
+def sheet(tiles: dict[str, tuple[Image.Image, ...]], columns: int) -> Image.Image:
+    """Paste pictures in rows, each with all that belong together, below their titles."""
+    width = max(sum(each.width + GAP for each in together) for together in tiles.values())
+    width += GAP if len(next(iter(tiles.values()))) > 1 else 0
+    rows = math.ceil(len(tiles) / columns)
+    size = columns * width + GAP, rows * (HEIGHT + LINE + GAP) + GAP
     out = Image.new("RGB", size, PAPER)
     draw, font = ImageDraw.Draw(out), ImageFont.load_default(15)
-    for number, (title, pair) in enumerate(tiles.items()):
-        row, column = divmod(number, COLUMNS)
+    for number, (title, together) in enumerate(tiles.items()):
+        row, column = divmod(number, columns)
         left, top = GAP + column * width, GAP + row * (HEIGHT + LINE + GAP)
         draw.text((left, top), title, INK, font)
-        for tile in pair:
+        for tile in together:
             out.paste(tile, (left, top + LINE))
             left += tile.width + GAP
     return out

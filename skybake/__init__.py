@@ -13,7 +13,12 @@ from skybake.version import __version__
 
 if TYPE_CHECKING:
     from skybake.baking import Baked, bake
+    from skybake.baking.convert import Converted, convert
+    from skybake.baking.orientation_chart import bake_orientation_chart
     from skybake.colour.space import ColourSpace
+    from skybake.environment.environment import Environment
+    from skybake.environment.load import load_environment
+    from skybake.environment.resample import resample
     from skybake.ephemeris.moment import Moment, TimeSpan, sun_at
     from skybake.ephemeris.place import SITES, Place, find_place
     from skybake.errors import (
@@ -30,6 +35,7 @@ if TYPE_CHECKING:
     from skybake.image.picture_settings import PictureSettings
     from skybake.image.scene import Scene
     from skybake.image.settings import Clouds, Encoding, Lighting, MapSettings, View, map_settings
+    from skybake.image.target import TARGETS, Target, TargetAxes, TargetReason, find_target
     from skybake.jit.workers import Workers
     from skybake.optics.changes import PresetChanges
     from skybake.pipeline import Pipeline, Sky
@@ -76,9 +82,11 @@ if TYPE_CHECKING:
     from skybake.sequence.products import Products, default_manifest
     from skybake.sequence.ramp import Ramp
     from skybake.sequence.run import FrameEvent, SequenceResult
+    from skybake.sidecar.map_light import MapLight
 
 __all__ = [
     "SITES",
+    "TARGETS",
     "Absorber",
     "Aerosol",
     "Angular",
@@ -90,10 +98,12 @@ __all__ = [
     "Coefficients",
     "ColourSpace",
     "Constituent",
+    "Converted",
     "CornetteShanksPhase",
     "Cubemap",
     "DoubleHenyeyGreensteinPhase",
     "Encoding",
+    "Environment",
     "Equirect",
     "ExponentialProfile",
     "ExposureCurve",
@@ -108,6 +118,7 @@ __all__ = [
     "InputError",
     "Light",
     "Lighting",
+    "MapLight",
     "MapSettings",
     "Moment",
     "Octahedral",
@@ -136,6 +147,9 @@ __all__ = [
     "Star",
     "TabulatedPhase",
     "TabulatedProfile",
+    "Target",
+    "TargetAxes",
+    "TargetReason",
     "TentProfile",
     "Tile",
     "TimeSpan",
@@ -143,13 +157,18 @@ __all__ = [
     "Workers",
     "__version__",
     "bake",
+    "bake_orientation_chart",
     "bake_sequence",
+    "convert",
     "default_manifest",
     "find_place",
+    "find_target",
+    "load_environment",
     "load_preset",
     "map_settings",
     "plan_sequence",
     "preset_names",
+    "resample",
     "sun_at",
 ]
 
@@ -165,10 +184,12 @@ _HOMES = {
     "Coefficients": "skybake.preset",
     "ColourSpace": "skybake.colour.space",
     "Constituent": "skybake.preset",
+    "Converted": "skybake.baking.convert",
     "CornetteShanksPhase": "skybake.preset",
     "Cubemap": "skybake.projection",
     "DoubleHenyeyGreensteinPhase": "skybake.preset",
     "Encoding": "skybake.image.settings",
+    "Environment": "skybake.environment.environment",
     "Equirect": "skybake.projection",
     "ExponentialProfile": "skybake.preset",
     "ExposureCurve": "skybake.sequence.exposure_curve",
@@ -183,6 +204,7 @@ _HOMES = {
     "InputError": "skybake.errors",
     "Light": "skybake.image.light",
     "Lighting": "skybake.image.settings",
+    "MapLight": "skybake.sidecar.map_light",
     "MapSettings": "skybake.image.settings",
     "Moment": "skybake.ephemeris.moment",
     "Octahedral": "skybake.projection",
@@ -204,27 +226,36 @@ _HOMES = {
     "Ramp": "skybake.sequence.ramp",
     "RayleighPhase": "skybake.preset",
     "Scene": "skybake.image.scene",
-    "SITES": "skybake.ephemeris.place",
     "SequenceResult": "skybake.sequence.run",
+    "SITES": "skybake.ephemeris.place",
     "Sky": "skybake.pipeline",
     "SkybakeError": "skybake.errors",
     "Spectrum": "skybake.preset",
     "Star": "skybake.preset",
     "TabulatedPhase": "skybake.preset",
     "TabulatedProfile": "skybake.preset",
+    "Target": "skybake.image.target",
+    "TargetAxes": "skybake.image.target",
+    "TargetReason": "skybake.image.target",
+    "TARGETS": "skybake.image.target",
     "TentProfile": "skybake.preset",
     "Tile": "skybake.preset",
     "TimeSpan": "skybake.ephemeris.moment",
     "View": "skybake.image.settings",
     "Workers": "skybake.jit.workers",
     "bake": "skybake.baking",
+    "bake_orientation_chart": "skybake.baking.orientation_chart",
     "bake_sequence": "skybake.sequence.bake",
+    "convert": "skybake.baking.convert",
     "default_manifest": "skybake.sequence.products",
     "find_place": "skybake.ephemeris.place",
+    "find_target": "skybake.image.target",
+    "load_environment": "skybake.environment.load",
     "load_preset": "skybake.preset",
     "map_settings": "skybake.image.settings",
     "plan_sequence": "skybake.sequence.planning",
     "preset_names": "skybake.preset",
+    "resample": "skybake.environment.resample",
     "sun_at": "skybake.ephemeris.moment",
 }
 

@@ -31,7 +31,8 @@ _RENAMED_WITHIN = 10.0
 _ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
 
 _COMMANDS = (
-    *("cache", "chart", "clouds", "presets", "preview", "probe", "render", "sequence"),
+    *("cache", "chart", "check", "clouds", "convert", "presets", "preview", "probe", "render"),
+    "sequence",
     "targets",
 )
 

@@ -28,6 +28,8 @@ def test_the_examples_run_in_their_order_and_write_their_files(tmp_path):
     assert "Ls 180 16:30:00" in done.stdout
     assert done.stdout.endswith("time sunset: needs day\n")
     assert sorted(path.name for path in folder.iterdir() if path.is_file()) == [
+        "chart.exr",
+        "cross.exr",
         "dome.exr",
         "dusk.exr",
         "dusk.png",
@@ -36,7 +38,9 @@ def test_the_examples_run_in_their_order_and_write_their_files(tmp_path):
         "evening.sequence.json",
         "gale.exr",
         "hazy.exr",
+        *(f"sky.{kind}" for kind in ("exr", "light.json", "py", "usda")),
         *(f"storm.{number:04}.exr" for number in range(1, 4)),
+        "three.exr",
         "west.exr",
         "west.png",
     ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from skybake.angles import direction_from_angles
 from skybake.colour.exposure import auto_ev
 from skybake.colour.space import ColourSpace, find_colour_space, luminance_weights, rgb_from_xyz
 from skybake.colour.white_balance import Array, automatic_white, white_from_kelvin
+from skybake.environment.environment import charts_on
 from skybake.image.layers import Pixels
 from skybake.image.picture_settings import PictureSettings, WhiteBalance, has_size_of_earth
 from skybake.projection.chart import Canvas, Chart
@@ -72,7 +73,7 @@ class FileLight:
         sun = None if self._disc() == "only" else self._sun_direction()
         found = [
             (here @ self._luminance, size, vectors[..., 1] >= 0.0)
-            for chart, here in _charts(canvas, pixels)
+            for chart, here in charts_on(canvas, pixels)
             for vectors in (_vectors(chart),)
             for size in (self._without_disc(chart, vectors, sun),)
         ]
@@ -128,7 +129,7 @@ class FileLight:
         Also the illuminance by as much of a sky of luminance 1.
         """
         rgb, seen = np.zeros(3), 0.0
-        for chart, here in _charts(canvas, self._pixels):
+        for chart, here in charts_on(canvas, self._pixels):
             vectors = _vectors(chart)
             upward = np.maximum(vectors[..., 1], 0.0) * self._without_disc(chart, vectors, sun)
             rgb += np.einsum("rcx,rc->x", here.astype(np.float64), upward)
@@ -181,19 +182,6 @@ class FileLight:
             name = self._attributes.get("skybake:preset")
             return name is not None and not str(name).startswith("earth")
         return not has_size_of_earth(radius, star_radius)
-
-
-def _charts(canvas: Canvas, pixels: Pixels) -> Iterator[tuple[Chart, Pixels]]:
-    """Yield the charts of a picture, each with its own pixels, the right way round."""
-    for part in canvas.parts:
-        chart = part.chart
-        rows = slice(part.row, part.row + chart.height)
-        here = pixels[rows, part.column : part.column + chart.width]
-        if part.flip in {"rows", "both"}:
-            here = here[::-1]
-        if part.flip in {"columns", "both"}:
-            here = here[:, ::-1]
-        yield chart, here
 
 
 def _vectors(chart: Chart) -> Array:

@@ -13,8 +13,10 @@ from skybake.formats.exr_mips import write_exr_mips
 from skybake.formats.scanlines import Rows
 from skybake.formats.spec import MapSpec
 from skybake.formats.whole_files import WholeFiles
+from skybake.image.layers import Pixels
 from skybake.image.settings import MapSettings
 from skybake.jit.workers import ALL_CPUS, Workers
+from skybake.projection.chart import Projection
 
 
 class HeldRows:
@@ -76,14 +78,46 @@ def write_held(
     InputError, OutputError
         As of `write_cube` and `write_exr_mips`.
     """
-    projection = settings.view.projection
+    projection, mips = settings.view.projection, settings.encoding.mips
+    pictures = [one.pixels for one in held]
+    held[0].clamped = write_whole(pictures, projection, paths, specs, files, workers, mips=mips)
+
+
+def write_whole(
+    pictures: Sequence[Pixels],
+    projection: Projection,
+    paths: Sequence[Path],
+    specs: Sequence[MapSpec],
+    files: WholeFiles,
+    workers: Workers,
+    *,
+    mips: bool,
+) -> int:
+    """Write whole pictures, and their smaller copies if they are wanted.
+
+    Parameters
+    ----------
+    pictures : sequence of ndarray of float32, shape (row, column, 3)
+        Of a map.
+    projection : Projection
+        Where its pixels look.
+    paths, specs, files, workers
+        As of `write_held`.
+    mips : bool
+        Whether smaller copies are wanted.
+
+    Returns
+    -------
+    int
+        Negative values that became 0 since the type has no sign.
+    """
     levels = [
-        mip_levels(one.pixels, projection, number) if settings.encoding.mips else [one.pixels]
-        for number, one in enumerate(held)
+        mip_levels(pixels, projection, number) if mips else [pixels]
+        for number, pixels in enumerate(pictures)
     ]
     if is_cube_file(paths[0]):
         cube = [np.stack(faces) for faces in zip(*levels, strict=True)]
-        held[0].clamped = write_cube(paths[0], cube, specs[0], files, workers)
-        return
+        return write_cube(paths[0], cube, specs[0], files, workers)
     for path, spec, each in zip(paths, specs, levels, strict=True):
         write_exr_mips(path, each, spec, files, workers)
+    return 0

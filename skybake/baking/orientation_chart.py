@@ -10,14 +10,19 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.angles import direction_from_angles
+from skybake.baking.held_pictures import HeldRows, write_held
 from skybake.baking.paths import map_paths
 from skybake.baking.pixel_type import fitting_pixel
+from skybake.baking.write import check_targets
 from skybake.colour.exposure import luminance_from_ev
+from skybake.formats.cube_file import is_cube_file
 from skybake.formats.spec import Attribute, MapSpec
+from skybake.formats.whole_files import WholeFiles
 from skybake.formats.writer import open_maps
 from skybake.image.orientation import Orientation
 from skybake.image.recipe import target_attributes
 from skybake.image.settings import MapSettings
+from skybake.jit.workers import ALL_CPUS
 from skybake.projection.chart import Canvas
 
 CHART_LUMINANCE = luminance_from_ev(15.0)
@@ -27,13 +32,13 @@ _BAND_ROWS = 128
 
 
 def bake_orientation_chart(
-    output: Path, settings: MapSettings, *, is_lettered: bool = True
+    output: Path | str, settings: MapSettings, *, is_lettered: bool = True
 ) -> tuple[Path, ...]:
     """Write a picture of directions by the projection and the writer of a map.
 
     Parameters
     ----------
-    output : Path
+    output : Path or str
         As of `skybake.baking.bake`.
     settings : MapSettings
         Of the map whose place it takes.
@@ -51,32 +56,45 @@ def bake_orientation_chart(
     SkybakeError
         If a setting or the target cannot be used; no file is left then.
     """
-    encoding = settings.encoding
-    canvases = dict(
-        zip(map_paths(output, settings), settings.view.projection.canvases(), strict=True)
-    )
-    brightest = CHART_LUMINANCE / encoding.white_luminance
-    specs = {
-        path: MapSpec(
-            canvas.width,
-            canvas.height,
-            encoding.space,
-            encoding.white_luminance,
-            pixel=fitting_pixel(encoding.pixel, brightest, brightest),
-            compression=encoding.compression,
-            envmap=canvas.envmap,
-            states_exposure=not encoding.omit_exposure,
-            attributes=_attributes(settings),
-        )
-        for path, canvas in canvases.items()
-    }
+    output = Path(output)
+    check_targets(output, settings)
+    paths, canvases = map_paths(output, settings), settings.view.projection.canvases()
+    brightest = np.float32(CHART_LUMINANCE / settings.encoding.white_luminance)
     picture = Orientation(settings, is_lettered=is_lettered)
-    with open_maps(specs) as writers:
-        for path, canvas in canvases.items():
-            pixels = _pixels(picture, canvas) * np.float32(brightest)
-            for first, last in _bands(canvas.height):
-                writers[path].write_rows(first, last, pixels[first:last])
-    return tuple(canvases)
+    pictures = [_pixels(picture, canvas) * brightest for canvas in canvases]
+    specs = [_spec(settings, canvas, float(brightest)) for canvas in canvases]
+    with WholeFiles() as files:
+        if is_cube_file(output) or settings.encoding.mips:
+            held = [_held(pixels) for pixels in pictures]
+            write_held(held, paths, specs, settings, files, ALL_CPUS)
+            return paths
+        with open_maps(dict(zip(paths, specs, strict=True)), files) as writers:
+            for path, pixels in zip(paths, pictures, strict=True):
+                for first, last in _bands(len(pixels)):
+                    writers[path].write_rows(first, last, pixels[first:last])
+    return paths
+
+
+def _held(pixels: npt.NDArray[np.float32]) -> HeldRows:
+    height, width = pixels.shape[:2]
+    held = HeldRows(width, height)
+    held.write_ready(0, height, pixels)
+    return held
+
+
+def _spec(settings: MapSettings, canvas: Canvas, brightest: float) -> MapSpec:
+    encoding = settings.encoding
+    return MapSpec(
+        canvas.width,
+        canvas.height,
+        encoding.space,
+        encoding.white_luminance,
+        pixel=fitting_pixel(encoding.pixel, brightest, brightest),
+        compression=encoding.compression,
+        envmap=canvas.envmap,
+        states_exposure=not encoding.omit_exposure,
+        attributes=_attributes(settings),
+    )
 
 
 def _pixels(picture: Orientation, canvas: Canvas) -> npt.NDArray[np.float32]:

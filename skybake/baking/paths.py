@@ -53,6 +53,7 @@ def default_path(planet: Planet, settings: MapSettings) -> Path:
         "clamped" if encoding.clamp_negative else "",
         *(_clouds(settings.clouds) if planet.clouds else ()),
         encoding.target or "",
+        view.below_horizon if view.below_horizon != "ground" else "",
         view.projection.label,
     )
     return Path("_".join(filter(None, parts)) + usual_suffix(settings))
@@ -120,6 +121,17 @@ def map_paths(target: Path, settings: MapSettings) -> tuple[Path, ...]:
         from skybake.image.target import find_target
 
         find_target(settings.encoding.target).check_suffix(projection.name, target.suffix)
+    return projection_paths(target, projection)
+
+
+def projection_paths(target: Path, projection: Projection) -> tuple[Path, ...]:
+    """Return the files of a map in a projection: one, or one for each face.
+
+    Raises
+    ------
+    InputError
+        If the file format cannot hold the layout.
+    """
     projection.check_file(target)
     if is_cube_file(target):
         _check_cube_file(target, projection)

@@ -26,10 +26,12 @@ from skybake.image.scene import Scene
 from skybake.image.settings import MapSettings
 from skybake.jit.workers import Workers
 from skybake.preset import Planet, load_preset
-from skybake.sidecar.light_file import check_light_file, write_light_file
 from skybake.sidecar.map_light import MapLight, map_light
 
 BAND_ROWS = 128
+
+FROM_BELOW = ("skybake:illuminanceFromBelow", "skybake:groundIlluminanceFromBelow")
+"""Attributes of maps that do not show the ground. [lx]"""
 
 Progress = Callable[[float], None]
 
@@ -54,6 +56,9 @@ class Baked(Light):
         CIE xy of the light that is white in it; None for D65.
     clamped : int
         Negative values that became 0 in a format without a sign.
+    from_below : tuple of 2 float, or None
+        Illuminance of a plane that looks down by what the map shows below the horizon instead of
+        the ground, and by the ground; None of a map that shows it. [lx]
     warnings : tuple of str
         What the files lose of the light, or why it may not be what was meant, a line each.
     map_light : MapLight or None
@@ -69,6 +74,7 @@ class Baked(Light):
     preview_ev: float | None
     preview_white: tuple[float, float] | None
     clamped: int
+    from_below: tuple[float, float] | None = None
     warnings: tuple[str, ...] = ()
     map_light: MapLight | None = None
     light_files: tuple[Path, ...] = ()
@@ -131,7 +137,7 @@ def bake(
     planet = preset if isinstance(preset, Planet) else load_preset(preset)
     output = Path(output) if output else default_path(planet, settings)
     preview = None if preview is None else Path(preview)
-    light_files = None if lights is None else [Path(path) for path in lights]
+    light_files = None if lights is None else list(dict.fromkeys(map(Path, lights)))
     check_targets(output, settings, preview, light_files or ())
     scene = Scene(planet, settings)
     if notice is not None and not scene.sky.is_solved:
@@ -168,8 +174,10 @@ def check_targets(
         check_encoding(path, settings)
     if preview is not None:
         check_preview(preview)
-    for path in light_files:
-        check_light_file(path, settings.view.projection.name, map_paths(output, settings))
+    if light_files:
+        from skybake.sidecar.light_file import check_light_files
+
+        check_light_files(light_files, settings.view.projection.name, map_paths(output, settings))
 
 
 def check_encoding(path: Path, settings: MapSettings) -> None:
@@ -216,9 +224,11 @@ def bake_scene(
         scene.light_clouds()
     begin("pixels")
     light = light_of_scene(scene)
+    from_below = _from_below(scene)
     described = None if light_files is None else map_light(scene, light)
     attributes = {
         **attributes_from_light(light),
+        **({} if from_below is None else dict(zip(FROM_BELOW, from_below, strict=True))),
         **recipe_attributes(planet, settings),
         **(attributes or {}),
     }
@@ -263,10 +273,11 @@ def bake_scene(
                 warnings += [] if lost is None else [lost]
             if shown is not None:
                 shown.draw()
-        if described is not None:
+        if light_files and described is not None:
+            from skybake.sidecar.light_file import write_light_files
+
             time = attributes.get("skybake:time")
-            for path in light_files or ():
-                write_light_file(path, described, paths, files, time=time)
+            write_light_files(light_files, described, paths, files, time=time)
     return Baked(
         **vars(light),
         files=paths,
@@ -276,10 +287,19 @@ def bake_scene(
         preview_ev=None if shown is None else shown.ev,
         preview_white=None if shown is None else shown.white,
         clamped=sum(each.writer.clamped for each in pictures),
+        from_below=from_below,
         warnings=tuple(warnings),
         map_light=described,
         light_files=tuple(light_files or ()),
     )
+
+
+def _from_below(scene: Scene) -> tuple[float, float] | None:
+    if scene.settings.view.below_horizon == "ground":
+        return None
+    from skybake.image.below_horizon import light_from_below
+
+    return light_from_below(scene)
 
 
 def _ignore(_: str) -> None:

@@ -38,7 +38,7 @@ def chart_scale(field, radius, x, y, z):
         return radius / max(radius + z, _LOWEST * radius)
     above = radius + z
     r = math.sqrt(x * x + y * y + above * above)
-    return radius / (r * math.sqrt(max(0.5 + 0.5 * above / r, _FARTHEST)))
+    return radius * math.sqrt(2.0 / (r * max(r + above, 2.0 * _FARTHEST * r)))
 
 
 @kernel
@@ -101,19 +101,44 @@ def cloud_place(field, radius, x, y, z, altitude, blur):
     x, y, erosion : float
         For `skybake.cloud_fields.field.extinction_at`. [km]
     room : float
-        Distance on the plane within which no other patch has clouds, and without erosion this one
-        none that are eroded. [km]
+        Distance on the plane within which no other patch has clouds. [km]
     """
     x, y = plane_place(field, radius, x, y, z)
+    east, north, room = lone_patch(field, x, y)
+    if room > 0.0:
+        return x + east, y + north, 0.0, room
+    return shared_place(field, x, y, altitude, blur, surface_detail(field, blur))
+
+
+@kernel
+def lone_patch(field, x, y):
+    """Shift of the tile at a place of the plane, and the distance within which it is the same.
+
+    The distance is 0 where several patches may have clouds. [km]
+    """
     if field.patch == 0.0:
-        return x, y, 0.0, math.inf
+        return 0.0, 0.0, math.inf
+    ai, aj, a, bi, bj, b, ci, cj, c = patches_around(field, x, y)
+    if b > a:
+        ai, aj, a, bi, bj, b = bi, bj, b, ai, aj, a
+    if c > a:
+        ai, aj, a, ci, cj, c = ci, cj, c, ai, aj, a
+    other = max(b, c)
+    if matters(other, a):
+        return 0.0, 0.0, 0.0
+    east, north = patch_shift(field, ai, aj)
+    return east, north, room_within(field, other, a)
+
+
+@kernel
+def shared_place(field, x, y, altitude, blur, detail):
+    """Do what `cloud_place` does, at a place of the plane where several patches may have clouds."""
     ai, aj, a, bi, bj, b, ci, cj, c = patches_around(field, x, y)
     most = max(a, b, c)
     # Beyond the three there are others, whose shares are 0 here.
     room = room_within(field, 0.0, most)
     nearest, erosion = math.inf, 0.0
-    detail = surface_detail(field, blur)
-    east = north = clear = uneroded = 0.0
+    east = north = clear = 0.0
     for n in range(3):
         if n == 0:
             i, j, share, other = ai, aj, a, max(b, c)
@@ -125,19 +150,18 @@ def cloud_place(field, radius, x, y, z, altitude, blur):
             room = min(room, room_within(field, share, most))
             continue
         dx, dy = patch_shift(field, i, j)
-        if share == most and not matters(other, most):
-            return x + dx, y + dy, 0.0, min(room, room_within(field, other, most))
+        free = surface_clearance(field, x + dx, y + dy, altitude, blur, detail)
+        if free > 0.0:
+            if nearest == math.inf and share == most:
+                east, north, erosion = dx, dy, erosion_of(field, share, other)
+            room = min(room, free)
+            continue
         eroded = erosion_of(field, share, other)
         distance = surface_distance(field, x + dx, y + dy, altitude, detail) + eroded
-        free = surface_clearance(field, x + dx, y + dy, altitude, blur, detail)
         if distance < nearest:
-            if nearest < math.inf:
-                room = min(room, clear)
+            room = min(room, clear) if nearest < math.inf else room
             nearest, erosion, clear = distance, eroded, free
             east, north = dx, dy
-            uneroded = room_within(field, other, share)
         else:
             room = min(room, free)
-    if erosion == 0.0:
-        room = min(room, uneroded)
     return x + east, y + north, erosion, room

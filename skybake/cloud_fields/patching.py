@@ -11,6 +11,7 @@ from skybake.cloud_fields.surface import STEP
 
 _STRIDE = 3
 _TRIALS = 14
+_COVERED = 0.1
 _ELSEWHERE = ((0.5, 0.5), (0.31, 0.74), (0.62, 0.19))
 """Shifts of the tile, in its period, over which the mean is taken."""
 
@@ -41,7 +42,7 @@ def vanishing_of(field: CloudField) -> float:
 
 
 def _mean_keeping_erosion(field: CloudField, vanishing: float) -> float:
-    """Return the erosion with which two tiles have the mean extinction of one. [km]"""
+    """Return the erosion with which two tiles have extinction and cover of one, about. [km]"""
     nodes = STEP * field.distance[:, ::_STRIDE, ::_STRIDE].astype(np.float32) - field.shift[0]
     # What noise displaces is, on average, a surface with a wider edge.
     width = np.float32(field.edge + 1.5 * float(np.abs(field.displacement[:, 0]).sum()))
@@ -50,14 +51,15 @@ def _mean_keeping_erosion(field: CloudField, vanishing: float) -> float:
         turns = round(north * nodes.shape[1]), round(east * nodes.shape[2])
         both.append(np.minimum(nodes, np.roll(nodes, turns, (1, 2))))
 
-    def mean(distance: npt.NDArray[np.float32]) -> float:
-        share = np.clip(0.5 - distance / width, 0.0, 1.0).mean((1, 2))
-        return float(share @ field.extinction)
+    def measure(distance: npt.NDArray[np.float32]) -> npt.NDArray[np.float64]:
+        share = np.clip(0.5 - distance / width, 0.0, 1.0)
+        depth = np.tensordot(field.extinction, share, (0, 0)) * field.spacing[0]
+        return np.array([depth.mean(), (depth > _COVERED).mean()])
 
-    wanted = mean(nodes)
+    wanted = measure(nodes)
     low, high = 0.0, vanishing
     for _ in range(_TRIALS):
         middle = 0.5 * (low + high)
-        found = sum(mean(each + np.float32(middle)) for each in both) / len(both)
-        low, high = (middle, high) if found > wanted else (low, middle)
+        found = sum(measure(each + np.float32(middle)) for each in both) / len(both)
+        low, high = (middle, high) if (found / wanted).sum() > 2.0 else (low, middle)
     return 0.5 * (low + high)

@@ -20,6 +20,7 @@ from skybake.clouds.airlight import (
 from skybake.clouds.compose import compose
 from skybake.clouds.dimming import Dimming, dimming_by
 from skybake.clouds.directions import fill_places, node_directions, unit_vectors
+from skybake.clouds.footprint import rays_per_side, see_pixels
 from skybake.clouds.layer import (
     SolvedLayer,
     Surroundings,
@@ -29,7 +30,7 @@ from skybake.clouds.layer import (
 )
 from skybake.clouds.march import Marching
 from skybake.clouds.particles import divide_phase
-from skybake.clouds.sight import Eye, dim_rays, light_rays, see_layer
+from skybake.clouds.sight import Eye, dim_rays, light_rays
 from skybake.clouds.suns import suns_over
 from skybake.clouds.unlit import Layer
 from skybake.jit.arguments import flatten
@@ -194,6 +195,7 @@ class Cloudscape:
             # Voxels of light are finer than those of the field there.
             is_deck = layer.grid.extinction.shape[1:] == (1, 1)
             across = float(layer.grid.spacing[2])
+            count = rays_per_side(layer.field, self.altitude, pixel)
             marching = Marching(
                 depth=self.depth,
                 shortest=SHORTEST if is_surface else 0.2 * float(layer.grid.spacing[0]),
@@ -202,15 +204,8 @@ class Cloudscape:
                 reach=REACH[not is_surface] * across,
                 pixel=pixel,
             )
-            see_layer(
-                layer.field,
-                solved.light,
-                self.eye,
-                directions,
-                marching,
-                (seen[k], passing[k]),
-                self.workers,
-            )
+            given = layer.field, solved.light, self.eye, directions, marching
+            see_pixels(*given, (seen[k], passing[k]), self.workers, count)
         return seen, passing
 
     @cached_property

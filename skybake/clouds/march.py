@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from skybake.cloud_fields.chart import chart_stretch, cloud_place, plane_place
+from skybake.cloud_fields.chart import chart_stretch, lone_patch, plane_place, shared_place
 from skybake.cloud_fields.field import detail_at, detailed_clearance, detailed_extinction
 from skybake.clouds.particles import TERMS
 from skybake.clouds.source import fill_source, prepare_ray
@@ -29,6 +29,9 @@ SHARED = 0.08
 
 SIMILAR = 1.02
 """Ratio of blurs that are not told apart."""
+
+LEVELS = 12
+"""Steps in which a ray crosses a layer at least."""
 
 THINNEST = 0.02
 """Extinction below which there is no cloud. [km⁻¹]"""
@@ -141,14 +144,16 @@ def fill_march(
         # Farther from the observer the plane is stretched more.
         far = end * dx, end * dy, altitude + end * dz
         stretch = chart_stretch(field, radius, far[0], far[1], far[2])
+        # Up to where the tile lies as it does here.
+        alone = east = north = 0.0
         passes, depth = 1.0, 0.0
         weighted = total = due = 0.0
         share, is_new = 1.0, True
-        # Up to here the tile is shifted as it was found to be.
-        sure = until = east = north = 0.0
         known, detail = begin * marching.pixel, detail_at(field, begin * marching.pixel)
         at = begin
-        shortest = marching.shortest + at * marching.pixel
+        # However coarse pixels are, a ray sees the layer at several heights.
+        coarsest = (field.top - field.base) / LEVELS / max(abs(scratch.local[0, 2]), 1e-6)
+        shortest = marching.shortest + min(at * marching.pixel, coarsest)
         step = shortest
         while at < end:
             step = min(step, end - at + 1e-6)
@@ -158,18 +163,18 @@ def fill_march(
             h = math.sqrt(px * px + py * py + above * above) - radius
             blur = middle * marching.pixel
             x, y = plane_place(field, radius, px, py, pz)
-            if middle < sure:
-                x, y, erosion = x + east, y + north, 0.0
-            else:
-                east, north = -x, -y
-                x, y, erosion, room = cloud_place(field, radius, px, py, pz, h, blur)
-                east, north = x + east, y + north
-                sure = middle + room / stretch if erosion == 0.0 else 0.0
-                until = middle + room / stretch
-            shortest = marching.shortest + blur
             if blur > SIMILAR * known:
                 known, detail = blur, detail_at(field, blur)
-            clear = min(detailed_clearance(field, x, y, h, blur, detail) / stretch, until - middle)
+            if middle >= alone:
+                east, north, room = lone_patch(field, x, y)
+                alone = middle + room / stretch
+            if middle < alone:
+                x, y, erosion, room = x + east, y + north, 0.0, alone - middle
+            else:
+                x, y, erosion, room = shared_place(field, x, y, h, blur, detail)
+                room /= stretch
+            shortest = marching.shortest + min(blur, coarsest)
+            clear = min(detailed_clearance(field, x, y, h, blur, detail) / stretch, room)
             if clear > 0.5 * shortest:
                 _add(scratch.source, due, seen[n])
                 due, is_new = 0.0, True

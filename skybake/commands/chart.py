@@ -30,9 +30,9 @@ from skybake.commands.printing.render_summary import target_lines
     *("-o", "--output"),
     metavar="FILE",
     type=click.Path(path_type=Path),
-    callback=values.with_suffix(".exr", ".hdr"),
+    callback=values.with_suffix(*values.MAP_SUFFIXES),
     show_default="chart, the target and the projection",
-    help="Chart to write, .exr or .hdr; {face} in it is replaced for six files.",
+    help="Chart to write, in the formats of a map; {face} in it is replaced for six files.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object.")
 @click.option("-q", "--quiet", is_flag=True, help="Print no summary.")
@@ -50,7 +50,7 @@ def chart(directions: bool, **options: Any) -> None:
     """
     check_memory()
     context = click.get_current_context()
-    check_needs(context, map_needs(options))
+    check_needs(context, map_needs(options), {"layers": (False, "a chart has none")})
     settings = map_settings(
         options, sun_elevation=options["sun_elevation"], sun_azimuth=options["sun_azimuth"]
     )

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.colour.space import ColourSpace
-from skybake.projection.chart import Chart, Projection
+from skybake.projection.chart import Canvas, Chart, Projection
 
 Pixels = npt.NDArray[np.float32]
 
@@ -51,14 +51,19 @@ def charts_of(
 ) -> Iterator[tuple[Chart, Pixels]]:
     """Yield the charts of a map, each with its own pixels, the right way round."""
     for canvas, picture in zip(projection.canvases(), pictures, strict=True):
-        for part in canvas.parts:
-            rows = slice(part.row, part.row + part.chart.height)
-            here = picture[rows, part.column : part.column + part.chart.width]
-            if part.flip in {"rows", "both"}:
-                here = here[::-1]
-            if part.flip in {"columns", "both"}:
-                here = here[:, ::-1]
-            yield part.chart, here
+        yield from charts_on(canvas, picture)
+
+
+def charts_on(canvas: Canvas, picture: Pixels) -> Iterator[tuple[Chart, Pixels]]:
+    """Yield the charts of a picture, each with its own pixels, the right way round."""
+    for part in canvas.parts:
+        rows = slice(part.row, part.row + part.chart.height)
+        here = picture[rows, part.column : part.column + part.chart.width]
+        if part.flip in {"rows", "both"}:
+            here = here[::-1]
+        if part.flip in {"columns", "both"}:
+            here = here[:, ::-1]
+        yield part.chart, here
 
 
 def flat_pixels(pictures: tuple[Pixels, ...]) -> Pixels:

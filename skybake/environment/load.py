@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ from skybake.errors import InputError
 from skybake.formats.reader import ImageFile
 from skybake.projection import find_projection
 from skybake.projection.chart import Projection, size_text
-from skybake.projection.cubemap import Cubemap
+from skybake.projection.cubemap import Cubemap, parse_face_names
 from skybake.projection.of_file import file_projection, file_recipe, sized
 
 _SHAPES = "2:1, or a cube's cross, row or column, or be given by its projection"
@@ -38,7 +39,8 @@ def load_environment(
     ----------
     path : Path or str
         An EXR or Radiance picture, ours or another, or one of integers; of a cubemap in six
-        files any of them, or their name with ``{face}`` in place of the faces'.
+        files any of them, or their name with ``{face}`` in place of the faces'. A sun that is a
+        part of its own in a file of ours is added.
     projection : Projection or str, optional
         In which the map is, of any size, or its name; by default what its metadata or else its
         shape say.
@@ -73,7 +75,10 @@ def load_environment(
     known = find_colour_space(space) if isinstance(space, str) else space
     if known is None and has_space(attributes):
         known = file_space(files[0], attributes)
-    pixels = tuple(np.concatenate(list(image.bands())) for image in images)
+    pixels = tuple(
+        _with_sun(file, np.concatenate(list(image.bands())), image.attributes)
+        for file, image in zip(files, images, strict=True)
+    )
     return Environment(
         pixels,
         laid_out,
@@ -83,6 +88,15 @@ def load_environment(
         attributes,
         tuple(_warnings(files, images, pixels, known)),
     )
+
+
+def _with_sun(path: Path, pixels: Pixels, attributes: Mapping[str, Any]) -> Pixels:
+    """Add the disc that a file of ours holds in a part of its own."""
+    shown = file_recipe(attributes).get("map")
+    if not isinstance(shown, dict) or shown.get("sun_disc") != "separate":
+        return pixels
+    total: Pixels = pixels + np.concatenate(list(ImageFile(path, part="sun").bands()))
+    return total
 
 
 def _files(path: Path, image: ImageFile | None, given: Projection | str | None) -> tuple[Path, ...]:
@@ -96,7 +110,11 @@ def _files(path: Path, image: ImageFile | None, given: Projection | str | None) 
         return (path,)
     if isinstance(shown, dict) and not says_faces and given is None:
         return (path,)
-    return face_files(path, is_face=says_faces or given is not None) or (path,)
+    names = None
+    if isinstance(shown, dict) and says_faces and isinstance(shown.get("face_names"), str):
+        with suppress(InputError):
+            names = parse_face_names(shown["face_names"])
+    return face_files(path, names, is_face=says_faces or given is not None) or (path,)
 
 
 def _projection(

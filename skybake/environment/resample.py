@@ -15,6 +15,8 @@ from skybake.environment.gather import Source, Target, add_excess, gather, recei
 from skybake.environment.layout import Layout, layout_of
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.projection.chart import Chart, Projection
+from skybake.projection.fisheye import Fisheye
+from skybake.projection.perspective import Perspective
 
 SAMPLES_PER_TEXEL = 1.5
 """Samples of the new map across a texel of the old one; at least two are across its own pixels."""
@@ -25,6 +27,8 @@ FEWEST_SAMPLES, FEW_PER_TEXEL, FEW_SAMPLES = 1e6, 8, 3e6
 CHUNKS = 32
 """Parts of a chart's rows that are worked on apart, whatever the number of threads, so that sums
 have the same bits."""
+
+_PARTIAL = (Fisheye, Perspective)
 
 _SURVEYED_ROWS = 64
 _WHOLE = 0.01
@@ -81,7 +85,27 @@ def resample(
     )
     fineness = _fineness(projection, ratio, len(pixels))
     pictures = _collect(projection, source, bright, fineness, workers)
-    return replace(environment, pixels=pictures, projection=projection, rotation=rotation)
+    return replace(
+        environment,
+        pixels=pictures,
+        projection=projection,
+        rotation=rotation,
+        warnings=(*environment.warnings, *_black(environment.projection, projection)),
+    )
+
+
+def _black(old: Projection, new: Projection) -> tuple[str, ...]:
+    """Say how much of the sphere a map does not show that another is made of."""
+    if not isinstance(old, _PARTIAL) or isinstance(new, _PARTIAL):
+        return ()
+    seen = sum(
+        float(np.broadcast_to(sizes, (len(sizes), chart.width)).sum())
+        for canvas in old.canvases()
+        for chart in (part.chart for part in canvas.parts)
+        for sizes in (chart.solid_angles(0, chart.height),)
+    )
+    missing = 1.0 - seen / (4.0 * math.pi)
+    return (f"{missing:.0%} of all directions are black, which the {old.name} map does not show",)
 
 
 @dataclass

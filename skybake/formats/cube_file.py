@@ -94,8 +94,9 @@ def write_cube(
     tags: dict[str, Attribute] = {
         "colorInteropID": spec.colour_space.interop_id,
         "chromaticities": tuple(spec.colour_space.chromaticities),
-        "whiteLuminance": spec.white_luminance,
     }
+    if spec.white_luminance is not None:
+        tags["whiteLuminance"] = spec.white_luminance
     return write_ktx2(
         path,
         levels,

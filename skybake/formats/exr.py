@@ -105,7 +105,8 @@ def image_spec(spec: MapSpec) -> OpenImageIO.ImageSpec:
     header["colorInteropID"] = spec.colour_space.interop_id
     header.attribute("chromaticities", "float[8]", tuple(spec.colour_space.chromaticities))
     header.attribute("adoptedNeutral", "float[2]", tuple(spec.colour_space.neutral))
-    header.attribute("whiteLuminance", "float", spec.white_luminance)
+    if spec.white_luminance is not None:
+        header.attribute("whiteLuminance", "float", spec.white_luminance)
     for key, value in {"DateTime": UNDATED, "Software": "skybake", **spec.attributes}.items():
         _set_attribute(header, key, value)
     return header

@@ -129,9 +129,7 @@ def header_lines(spec: MapSpec) -> bytes:
     attributes = dict(spec.attributes)
     lines = [
         f"SOFTWARE={_one_line(attributes.pop('Software', 'skybake'))}",
-        f"EXPOSURE={RADIANCE_EFFICACY / spec.white_luminance:.9g}"
-        if spec.states_exposure
-        else f"# {WHITE_LUMINANCE}={spec.white_luminance:.9g}",
+        *_scale_lines(spec),
         f"PRIMARIES={primaries}",
         f"# colorInteropID={spec.colour_space.interop_id}",
     ]
@@ -143,6 +141,14 @@ def header_lines(spec: MapSpec) -> bytes:
         starts = range(0, max(1, len(text)), _COMMENT_LENGTH)
         lines += [f"# {key}={text[start : start + _COMMENT_LENGTH]}" for start in starts]
     return "".join(f"{line}\n" for line in lines).encode()
+
+
+def _scale_lines(spec: MapSpec) -> tuple[str, ...]:
+    if spec.white_luminance is None:
+        return ()
+    if spec.states_exposure:
+        return (f"EXPOSURE={RADIANCE_EFFICACY / spec.white_luminance:.9g}",)
+    return (f"# {WHITE_LUMINANCE}={spec.white_luminance:.9g}",)
 
 
 def read_header(path: Path) -> dict[str, str]:

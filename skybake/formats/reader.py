@@ -33,6 +33,8 @@ class ImageFile:
         Any image of half or float pixels that OpenImageIO reads.
     takes_integers : bool, optional
         Also read pixels of 8 or 16 bits, which are taken as encoded for sRGB.
+    part : str, optional
+        Name of a part of an OpenEXR file; by default the first one.
 
     Attributes
     ----------
@@ -47,12 +49,16 @@ class ImageFile:
     Raises
     ------
     InputError
-        If the file is missing, damaged, of integers, or without R, G, B.
+        If the file is missing, damaged, of integers, or without R, G, B, or has no such part.
     """
 
-    def __init__(self, path: Path, *, takes_integers: bool = False) -> None:
+    def __init__(
+        self, path: Path, *, takes_integers: bool = False, part: str | None = None
+    ) -> None:
         self._path = path
-        self._source = _open(path)
+        self._source = open_image(path)
+        if part is not None:
+            _seek_part(path, self._source, part)
         spec = self._source.spec()
         names = [name.upper() for name in spec.channelnames]
         self.is_integer = spec.format.basetype in {OpenImageIO.UINT8, OpenImageIO.UINT16}
@@ -64,7 +70,7 @@ class ImageFile:
             raise InputError(f"{path}: channels must be R, G, B, got {found}")
         self.width: int = spec.width
         self.height: int = spec.height
-        self.attributes = _attributes(path, self._source)
+        self.attributes = attributes_of(path, self._source)
 
     def bands(self) -> Iterator[Pixels]:
         """Yield R, G and B of some rows after others, shape (row, width, 3), finite.
@@ -80,7 +86,7 @@ class ImageFile:
             with suppress(RuntimeError):
                 rows = self._read(first, last)
             if rows is None:
-                raise InputError(f"{self._path}: must be complete, got {_reason(self._source)}")
+                raise InputError(f"{self._path}: must be complete, got {reason(self._source)}")
             is_finite = np.isfinite(rows)
             if not is_finite.all():
                 row, column, channel = np.argwhere(~is_finite)[0].tolist()
@@ -139,11 +145,20 @@ def read_attributes(path: Path) -> dict[str, Any]:
     """
     if path.suffix.lower() == ".ktx2":
         return read_texts(path)
-    source = _open(path)
+    source = open_image(path)
     if source.format_name() != _FORMATS.get(path.suffix.lower()):
         raise InputError(f"{path}: format must match the suffix, got {source.format_name()}")
     source.close()
-    return _attributes(path, source)
+    return attributes_of(path, source)
+
+
+def _seek_part(path: Path, source: OpenImageIO.ImageInput, part: str) -> None:
+    number = 0
+    while source.seek_subimage(number, 0):
+        if source.spec().get_string_attribute("oiio:subimagename") == part:
+            return
+        number += 1
+    raise InputError(f"{path}: parts must include {part}, got {number} others")
 
 
 def _linear(codes: Pixels) -> Pixels:
@@ -156,18 +171,26 @@ def _linear(codes: Pixels) -> Pixels:
     return light
 
 
-def _open(path: Path) -> OpenImageIO.ImageInput:
+def open_image(path: Path) -> OpenImageIO.ImageInput:
+    """Open an image file.
+
+    Raises
+    ------
+    InputError
+        If it is missing or no image.
+    """
     if not path.is_file():
         raise InputError(f"{path}: must be an image file, got {_what_instead(path)}")
     if not is_utf8(path):
         raise InputError(f"{path}: must be UTF-8, got bytes that are not")
     source = OpenImageIO.ImageInput.open(str(path))
     if source is None:
-        raise InputError(f"{path}: must be an image, got {_reason(OpenImageIO)}")
+        raise InputError(f"{path}: must be an image, got {reason(OpenImageIO)}")
     return source
 
 
-def _attributes(path: Path, source: OpenImageIO.ImageInput) -> dict[str, Any]:
+def attributes_of(path: Path, source: OpenImageIO.ImageInput) -> dict[str, Any]:
+    """Return the attributes of the part that an open file is at, see `ImageFile`."""
     attributes: dict[str, Any] = {a.name: a.value for a in source.spec().extra_attribs}
     attributes = joined(attributes)
     if source.format_name() == "hdr":
@@ -201,8 +224,8 @@ def _what_instead(path: Path) -> str:
     return "a folder" if path.is_dir() else "nothing" if not path.exists() else "a device or pipe"
 
 
-def _reason(source: Any) -> str:
-    """First line of the library's message, which may repeat bytes of a file."""
+def reason(source: Any) -> str:
+    """Return the first line of the library's message, which may repeat bytes of a file."""
     try:
         message = source.geterror()
     except UnicodeDecodeError:

@@ -55,8 +55,8 @@ class MapSpec:
         Size of the whole file. [pixel]
     colour_space : Tagged
         Space of the pixels.
-    white_luminance : float
-        Luminance of RGB (1, 1, 1). [cd m⁻²]
+    white_luminance : float or None
+        Luminance of RGB (1, 1, 1); None of a file that does not state it. [cd m⁻²]
     pixel : {"half", "float", "rgb9e5", "r11g11b10"}
         Stored type; Radiance files hold RGBE regardless, and OpenEXR has only the first two.
     compression : str
@@ -76,7 +76,7 @@ class MapSpec:
     width: int
     height: int
     colour_space: Tagged
-    white_luminance: float
+    white_luminance: float | None
     pixel: str = "half"
     compression: str = "zip"
     envmap: Literal["latlong", "cube"] | None = None
@@ -92,7 +92,7 @@ class MapSpec:
             )
         if self.pixel not in PIXELS:
             raise InputError(f"pixel: must be one of {', '.join(PIXELS)}, got {self.pixel!r}")
-        if not 0.0 < self.white_luminance < float("inf"):
+        if self.white_luminance is not None and not 0.0 < self.white_luminance < float("inf"):
             raise InputError(
                 f"white_luminance: must be positive, got {self.white_luminance:g} cd/m2"
             )

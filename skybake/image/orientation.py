@@ -12,7 +12,7 @@ import numpy.typing as npt
 from skybake.angles import direction_from_angles
 from skybake.formats.lettering import draw_text, text_width
 from skybake.image.settings import MapSettings
-from skybake.image.target_model import Axes
+from skybake.image.target_model import TargetAxes
 from skybake.projection.chart import Chart
 
 Array = npt.NDArray[np.float64]
@@ -21,7 +21,7 @@ _LETTERS = 96
 _STEP = math.radians(30.0)
 _LINE = math.radians(0.25)
 _RING = math.radians(3.0)
-_OWN_AXES = Axes(east="+X", north="-Z", up="+Y")
+_OWN_AXES = TargetAxes(east="+X", north="-Z", up="+Y")
 _INK, _PAPER, _SUN = (1.0, 1.0, 1.0), (0.02, 0.02, 0.02), (1.0, 0.85, 0.2)
 
 
@@ -33,7 +33,7 @@ class _Label(NamedTuple):
     mask : ndarray of float64, shape (row, column)
         Opacity of the ink.
     right, up, forward : ndarray of float64, shape (3,)
-        Axes of the plane; forward is where it touches.
+        TargetAxes of the plane; forward is where it touches.
     half_width, half_height : float
         Of the mask on the plane, as tangents.
     """
@@ -76,7 +76,9 @@ class Orientation:
         if self._labels is not None:
             footprint = np.broadcast_to(chart.footprints(first, last), zenith.shape)
             _draw_lines(pixels, directions, footprint)
-            _mix(pixels, _ring(directions @ self._sun, footprint), _SUN)
+            toward_sun = directions @ self._sun
+            _mix(pixels, _ring(toward_sun, footprint, 2.5 * _LINE), _PAPER)
+            _mix(pixels, _ring(toward_sun, footprint, _LINE), _SUN)
             for label in self._labels:
                 _draw(pixels, directions, label)
         nowhere = chart.looks_nowhere(first, last)
@@ -111,7 +113,7 @@ def _labels(settings: MapSettings, sun: Array) -> Iterator[_Label]:
             yield _upright(f"for {settings.encoding.target}", i * math.pi / 2.0, -20.0, 5.0)
 
 
-def _axes(settings: MapSettings) -> tuple[Axes, float]:
+def _axes(settings: MapSettings) -> tuple[TargetAxes, float]:
     """Return the axes whose names stand on the picture, and the bearing that is their north."""
     view, name = settings.view, settings.encoding.target
     if name is None:
@@ -186,18 +188,17 @@ def _draw_lines(pixels: Array, directions: Array, footprint: Array) -> None:
     _mix(pixels, _covered(np.abs(elevation), footprint), _INK)
 
 
-def _ring(cosine: Array, footprint: Array) -> Array:
-    """Opacity of a ring around the sun, and of its disc."""
+def _ring(cosine: Array, footprint: Array, half_width: float) -> Array:
+    """Opacity of a ring around the sun, and of a spot where it is."""
     angle = np.arccos(np.clip(cosine, -1.0, 1.0))
-    ring = _covered(np.abs(angle - _RING), footprint)
-    return np.maximum(ring, _covered(np.maximum(angle - 2.0 * _LINE, 0.0), footprint))
+    ring = _covered(np.abs(angle - _RING), footprint, half_width)
+    return np.maximum(ring, _covered(angle, footprint, 2.0 * half_width))
 
 
-def _covered(distance: Array, footprint: Array) -> Array:
+def _covered(distance: Array, footprint: Array, half_width: float = _LINE) -> Array:
     """Share of a pixel that a line covers, at least a pixel wide, by the distance of its middle."""
-    share: Array = np.clip(
-        (np.maximum(_LINE, 0.5 * footprint) - distance) / footprint + 0.5, 0.0, 1.0
-    )
+    reach = np.maximum(half_width, 0.5 * footprint)
+    share: Array = np.clip((reach - distance) / footprint + 0.5, 0.0, 1.0)
     return share
 
 

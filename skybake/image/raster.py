@@ -122,13 +122,23 @@ class _Shown:
 
 def sky_pixels(scene: Scene, chart: Chart, first: int, last: int) -> Pixels:
     """Light of the sky and the ground in a chart's rows, without the sun's disc, RGB."""
-    return _smooth_pixels(scene, chart, first, last, scene.evaluate)
+    return _smooth_pixels(scene, chart, first, last, _seen(scene, scene.evaluate))
 
 
 def _apart_pixels(scene: Scene, chart: Chart, first: int, last: int) -> Pixels:
     from skybake.image.apart import evaluate_apart
 
-    return _smooth_pixels(scene, chart, first, last, partial(evaluate_apart, scene))
+    evaluate = _seen(scene, partial(evaluate_apart, scene))
+    return _smooth_pixels(scene, chart, first, last, evaluate)
+
+
+def _seen(scene: Scene, evaluate: Evaluate) -> Evaluate:
+    """Return what evaluates pixels with what the view shows below the horizon."""
+    if scene.settings.view.below_horizon == "ground":
+        return evaluate
+    from skybake.image.below_horizon import without_ground
+
+    return without_ground(scene, evaluate)
 
 
 def _transmittance_pixels(scene: Scene, chart: Chart, first: int, last: int) -> Pixels:

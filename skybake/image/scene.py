@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from skybake.colour.space import luminance_weights, rgb_from_xyz
-from skybake.errors import UnsolvableError
+from skybake.errors import InputError, UnsolvableError
 from skybake.image.luminous import luminous_weights
 from skybake.image.settings import MapSettings
 from skybake.image.stages import Stages
@@ -106,9 +106,20 @@ class Scene:
             workers=workers,
         )
         self.sky.check_clouds()
+        self._check_horizon()
         self.sun_zenith = math.pi / 2.0 - settings.lighting.sun_elevation
         # Of maps that are not rotated, the compass bearing.
         self.sun_bearing = settings.lighting.sun_azimuth - settings.view.rotation
+
+    def _check_horizon(self) -> None:
+        """Refuse to extend a horizon that has no light: that of a planet seen from space."""
+        view, medium = self.settings.view, self.sky.medium
+        top = medium.r_top - medium.r_bottom
+        if view.below_horizon == "extend" and view.altitude >= top:
+            raise InputError(
+                "below horizon: extend needs an observer in the atmosphere, below "
+                f"{top:g} km, got {view.altitude:g} km"
+            )
 
     @cached_property
     def sun(self) -> Disc:

@@ -16,6 +16,7 @@ from skybake.sky.sky import METHODS
 from skybake.units import degrees, metres
 
 SUN_DISCS = ("include", "exclude", "only", "separate")
+BELOW_HORIZON = ("ground", "extend", "black")
 LARGEST_SUN = math.radians(20.0)
 """Largest diameter of a sun's disc that is drawn in another size than its own. [rad]"""
 
@@ -38,16 +39,21 @@ class View:
         Kind and size of the map.
     rotation : float
         Compass bearing that the map's -Z looks to instead of north. [rad]
+    below_horizon : {"ground", "extend", "black"}
+        What is shown below the true horizon: the ground, the horizon's light softly extended
+        downward, or nothing.
     """
 
     altitude: float = 0.0
     projection: Projection = field(default_factory=Equirect)
     rotation: float = 0.0
+    below_horizon: str = "ground"
 
     def __post_init__(self) -> None:
         """Refuse what cannot be baked."""
         if not math.isfinite(self.rotation):
             raise InputError(f"rotation: must be finite, got {self.rotation}")
+        _check_known("below horizon", self.below_horizon, BELOW_HORIZON)
 
 
 @dataclass(frozen=True)
@@ -218,7 +224,7 @@ class MapSettings:
         has_clouds : bool, optional
             Whether the world has any, whose settings count then.
         """
-        lighting, encoding = self.lighting, self.encoding
+        lighting, encoding, below = self.lighting, self.encoding, self.view.below_horizon
         return {
             "sun_elevation_deg": degrees(lighting.sun_elevation),
             "sun_azimuth_deg": degrees(lighting.sun_azimuth),
@@ -226,6 +232,7 @@ class MapSettings:
             "altitude_m": metres(self.view.altitude),
             **self.view.projection.recipe(),
             "rotate_deg": degrees(self.view.rotation),
+            **({} if below == "ground" else {"below_horizon": below}),
             "colorspace": encoding.colorspace,
             "white_luminance_cd_m2": encoding.white_luminance,
             "pixel": encoding.pixel,

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from skybake.errors import InputError
 from skybake.image.target_engines import ENGINES
-from skybake.image.target_model import Axes, Reason, Target
+from skybake.image.target_model import Target, TargetAxes, TargetReason
 from skybake.image.target_renderers import RENDERERS
 
-__all__ = ["TARGETS", "Axes", "Reason", "Target", "find_target"]
+__all__ = ["TARGETS", "Target", "TargetAxes", "TargetReason", "find_target"]
 
 TARGETS: dict[str, Target] = {target.name: target for target in (*RENDERERS, *ENGINES)}
 """Targets by their names."""

@@ -13,7 +13,7 @@ SUBJECTS = ("maps", "turn", "cube", "rows", "scale", "pixel", "sun")
 """What every target gives a reason for."""
 
 
-class Reason(NamedTuple):
+class TargetReason(NamedTuple):
     """Why something of a target is as it is.
 
     Attributes
@@ -28,7 +28,7 @@ class Reason(NamedTuple):
     source: str
 
 
-class Axes(NamedTuple):
+class TargetAxes(NamedTuple):
     """Where a program's own axes point, once the map is in it.
 
     Attributes
@@ -63,7 +63,7 @@ class Target:
         The program, and what takes the map in it.
     maps : mapping of str to tuple of str
         Projections that it takes, the usual one first, and the suffixes of their files, likewise.
-    axes : Axes
+    axes : TargetAxes
         Where east, north and up are in it then.
     verified : str
         With what this was verified, and how; or that it is by documentation only.
@@ -76,14 +76,14 @@ class Target:
         As `skybake.image.settings.Encoding` and `Lighting` have it.
     omit_exposure : bool
         Leave EXPOSURE out of Radiance pictures.
-    reasons : mapping of str to Reason
+    reasons : mapping of str to TargetReason
         By what they are for, all of `SUBJECTS`.
     """
 
     name: str
     title: str
     maps: Mapping[str, tuple[str, ...]]
-    axes: Axes
+    axes: TargetAxes
     verified: str
     rotation: float = 0.0
     cube_layout: str = "faces"
@@ -94,7 +94,7 @@ class Target:
     pixel: str = "auto"
     sun_disc: str = "include"
     omit_exposure: bool = True
-    reasons: Mapping[str, Reason] = field(default_factory=dict)
+    reasons: Mapping[str, TargetReason] = field(default_factory=dict)
 
     @property
     def projection(self) -> str:
@@ -102,7 +102,8 @@ class Target:
         return next(iter(self.maps))
 
     def suffix(self, projection: str) -> str:
-        """Return the usual suffix of its maps of a projection."""
+        """Return the usual suffix of its maps of a projection, which `check` takes."""
+        self.check(projection, {})
         return self.maps[projection][0]
 
     def with_defaults(self, projection: str, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -162,6 +163,7 @@ class Target:
 
     def check_suffix(self, projection: str, suffix: str) -> None:
         """Raise an `InputError` if the program does not take a map in files of a suffix."""
+        self.check(projection, {})
         suffixes = self.maps[projection]
         if suffix.lower() not in suffixes:
             raise InputError(

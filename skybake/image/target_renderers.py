@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from skybake.image.target_model import Axes, Reason, Target
+from skybake.image.target_model import Target, TargetAxes, TargetReason
 from skybake.image.target_reasons import (
     AUTO,
     BY_DOCUMENTATION,
@@ -21,15 +21,15 @@ RENDERERS = (
         name="blender",
         title="Blender: Environment Texture of a World",
         maps={"equirect": EITHER},
-        axes=Axes(east="+X", north="+Y", up="+Z"),
-        verified="Blender 5.0.1: cameras see the directions that a map encodes",
+        axes=TargetAxes(east="+X", north="+Y", up="+Z"),
+        verified="Blender 5.0.1: directions of a map, and level and shadow of a lit scene",
         rotation=WEST,
         reasons={
-            "maps": Reason(
+            "maps": TargetReason(
                 "The Environment Texture takes equirect maps and mirror balls.",
                 "https://docs.blender.org/manual/en/latest/render/shader_nodes/textures/environment.html",
             ),
-            "turn": Reason(
+            "turn": TargetReason(
                 "u = 1/2 - atan2(y, x) / 2 pi: -X is at the left edge, which is west if +Y is "
                 "north, as Blender's Sun Position has it.",
                 "intern/cycles/kernel/camera/projection.h, direction_to_equirectangular_range",
@@ -48,11 +48,11 @@ RENDERERS = (
         axes=GRAPHICS,
         verified=BY_DOCUMENTATION,
         reasons={
-            "maps": Reason(
+            "maps": TargetReason(
                 "A dome light takes the format latlong everywhere, cubes nearly nowhere.",
                 "https://openusd.org/release/user_guides/schemas/usdLux/DomeLight.html",
             ),
-            "turn": Reason(OUR_AXES, "the schema DomeLight: latlong as OpenEXR has it"),
+            "turn": TargetReason(OUR_AXES, "the schema DomeLight: latlong as OpenEXR has it"),
             "cube": NO_CUBE,
             "rows": CENTRES,
             "scale": PHOTOGRAPH,
@@ -65,16 +65,16 @@ RENDERERS = (
         title="Mitsuba: emitter envmap",
         maps={"equirect": EITHER},
         axes=GRAPHICS,
-        verified="Mitsuba 3.9.1: rays see the directions that a map encodes",
+        verified="Mitsuba 3.9.1: directions of a map, and level and shadow of a lit scene",
         equirect_rows="poles",
         reasons={
-            "maps": Reason(
+            "maps": TargetReason(
                 "The emitter envmap takes equirect maps.",
                 "https://mitsuba.readthedocs.io/en/stable/src/generated/plugins_emitters.html",
             ),
-            "turn": Reason(OUR_AXES, "rays through a map of directions"),
+            "turn": TargetReason(OUR_AXES, "rays through a map of directions"),
             "cube": NO_CUBE,
-            "rows": Reason(
+            "rows": TargetReason(
                 "It takes the first row for the zenith and the last for the nadir: without, a sun "
                 "in the zenith loses half of its light.",
                 "rays through a map with the sun in the zenith, docs/formats.md, OpenEXR",
@@ -91,11 +91,11 @@ RENDERERS = (
         axes=GRAPHICS,
         verified=BY_DOCUMENTATION,
         reasons={
-            "maps": Reason(
+            "maps": TargetReason(
                 "The Dome Light takes the format latlong.",
                 "https://www.sidefx.com/docs/houdini/nodes/lop/domelight.html",
             ),
-            "turn": Reason(OUR_AXES, "it is USD's DomeLight"),
+            "turn": TargetReason(OUR_AXES, "it is USD's DomeLight"),
             "cube": NO_CUBE,
             "rows": CENTRES,
             "scale": PHOTOGRAPH,
@@ -108,19 +108,19 @@ RENDERERS = (
         title="OpenEXR: programs that follow its envmap attribute, as exrenvmap",
         maps={"equirect": (".exr",), "cubemap": (".exr",)},
         axes=GRAPHICS,
-        verified="exrenvmap of OpenEXR 3.1: it makes the cube of the equirect map",
+        verified="exrenvmap 3.1.5: directions of maps",
         cube_layout="exr",
         equirect_rows="poles",
         reasons={
-            "maps": Reason(
+            "maps": TargetReason(
                 "The attribute envmap belongs to .exr.",
                 "https://openexr.com/en/latest/StandardAttributes.html",
             ),
-            "turn": Reason(OUR_AXES, "src/lib/OpenEXR/ImfEnvmap.h"),
-            "cube": Reason(
+            "turn": TargetReason(OUR_AXES, "src/lib/OpenEXR/ImfEnvmap.h"),
+            "cube": TargetReason(
                 "Six faces below each other, in the world's axes.", "src/lib/OpenEXR/ImfEnvmap.h"
             ),
-            "rows": Reason(
+            "rows": TargetReason(
                 "The first row is the zenith and the last the nadir. Columns stay centred, half a "
                 "texel beside the letter, as nearly all readers have them.",
                 "src/lib/OpenEXR/ImfEnvmap.h",

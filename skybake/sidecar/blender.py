@@ -102,7 +102,7 @@ light_by_sun(bpy.context.scene)
 '''
 
 
-def blender_script(light: MapLight, files: Sequence[str], *, turn: float = TURN) -> str:
+def blender_script(light: MapLight, files: Sequence[str]) -> str:
     """Return a script of Python for Blender 4.0 and later.
 
     Blender's importer of USD takes a distant light four times too bright, which it does not
@@ -114,9 +114,9 @@ def blender_script(light: MapLight, files: Sequence[str], *, turn: float = TURN)
         Of an equirect map.
     files : sequence of str
         The map, as seen from the script's folder.
-    turn : float, optional
-        By which Blender has to turn the map about its Z; 0 of one that is turned already. [rad]
     """
+    # A map that is turned for a program keeps its north, one that a user has turned does not.
+    turn = math.remainder(TURN + light.target_turn, 2.0 * math.pi)
     # A lamp's colour is at most 1 in Blender's interface.
     strongest = max(light.sun_colour)
     strength = light.direct_normal_illuminance / light.white_luminance

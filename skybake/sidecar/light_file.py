@@ -1,18 +1,18 @@
-"""A file about the light of one map, in the format that its suffix names."""
+"""Files about the light of one map, in the formats that their suffixes name."""
 
 from __future__ import annotations
 
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from skybake.errors import InputError
 from skybake.formats.spec import Attribute
-from skybake.formats.targets import check_target
+from skybake.formats.targets import check_target, faults_of
 from skybake.formats.whole_files import WholeFiles
 from skybake.projection import PROJECTIONS
-from skybake.sidecar.blender import TURN, blender_script
+from skybake.sidecar.blender import blender_script
 from skybake.sidecar.light_json import light_json
 from skybake.sidecar.map_light import MapLight
 from skybake.sidecar.usd import Common, DomeAndSun, check_usd, usd_layer
@@ -22,13 +22,13 @@ SUFFIXES = (".json", ".usda", ".py")
 """JSON, Pixar's USD, and a script for Blender."""
 
 
-def check_light_file(path: Path, projection: str, files: Sequence[Path]) -> None:
-    """Raise the errors of a light file that can be found before anything is computed.
+def check_light_files(paths: Iterable[Path], projection: str, files: Sequence[Path]) -> None:
+    """Raise the errors of light files that can be found before anything is computed.
 
     Parameters
     ----------
-    path : Path
-        With one of `SUFFIXES`.
+    paths : iterable of Path
+        Each with one of `SUFFIXES`.
     projection : str
         Of the map, a key of `skybake.projection.PROJECTIONS`.
     files : sequence of Path
@@ -37,10 +37,54 @@ def check_light_file(path: Path, projection: str, files: Sequence[Path]) -> None
     Raises
     ------
     InputError
-        If the suffix is none of them, or the format cannot refer to the map.
+        If a suffix is none of them, or the format cannot refer to the map.
     OutputError
         If a file cannot be written under that name.
     """
+    for path in paths:
+        _check(path, projection, files)
+
+
+def write_light_files(
+    paths: Iterable[Path],
+    light: MapLight,
+    files: Sequence[Path],
+    whole: WholeFiles,
+    *,
+    time: Attribute | None = None,
+) -> None:
+    """Write light files, which appear together with their map.
+
+    Parameters
+    ----------
+    paths : iterable of Path
+        As of `check_light_files`.
+    light : MapLight
+        What they tell.
+    files : sequence of Path
+        The map, one file or six.
+    whole : WholeFiles
+        The files that they are to appear with.
+    time : str, optional
+        Attribute of the map's files: ISO 8601 in UTC, for JSON.
+
+    Raises
+    ------
+    OutputError
+        If one cannot be written.
+    """
+    for path in paths:
+        text = _text(path, light, files, None if time is None else str(time))
+        with faults_of(path):
+            whole.add(path).write_text(text, "utf-8")
+
+
+def seen_from(folder: Path, files: Sequence[Path]) -> list[str]:
+    """Return names of files relative to a folder, with ``/``."""
+    return [Path(os.path.relpath(file, folder)).as_posix() for file in files]
+
+
+def _check(path: Path, projection: str, files: Sequence[Path]) -> None:
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         raise InputError(
@@ -56,51 +100,14 @@ def check_light_file(path: Path, projection: str, files: Sequence[Path]) -> None
     check_target(path)
 
 
-def write_light_file(
-    path: Path,
-    light: MapLight,
-    files: Sequence[Path],
-    whole: WholeFiles,
-    *,
-    time: Attribute | None = None,
-    blender_turn: float = TURN,
-) -> None:
-    """Write a light file, which appears together with its map.
-
-    Parameters
-    ----------
-    path : Path
-        As of `check_light_file`.
-    light : MapLight
-        What it tells.
-    files : sequence of Path
-        The map, one file or six.
-    whole : WholeFiles
-        The files that it is to appear with.
-    time : str, optional
-        Attribute of the map's files: ISO 8601 in UTC, for JSON.
-    blender_turn : float, optional
-        As of `blender_script`.
-
-    Raises
-    ------
-    OutputError
-        If it cannot be written.
-    """
+def _text(path: Path, light: MapLight, files: Sequence[Path], time: str | None) -> str:
     names = seen_from(path.parent, files)
     suffix = path.suffix.lower()
     if suffix == ".usda":
-        text = _usd(path, light, names)
-    elif suffix == ".py":
-        text = blender_script(light, names, turn=blender_turn)
-    else:
-        text = light_json(light, names, None if time is None else str(time))
-    whole.add(path).write_text(text, "utf-8")
-
-
-def seen_from(folder: Path, files: Sequence[Path]) -> list[str]:
-    """Return names of files relative to a folder, with ``/``."""
-    return [Path(os.path.relpath(file, folder)).as_posix() for file in files]
+        return _usd(path, light, names)
+    if suffix == ".py":
+        return blender_script(light, names)
+    return light_json(light, names, time)
 
 
 def _usd(path: Path, light: MapLight, names: Sequence[str]) -> str:

@@ -35,6 +35,7 @@ def light_json(light: MapLight, files: Sequence[str], time: str | None = None) -
             "files": list(files),
             "projection": light.projection,
             "rotate_deg": degrees(light.rotation),
+            "target": light.target,
             "colorspace": light.colorspace,
             "white_luminance_cd_m2": light.white_luminance,
             "sun_disc": light.sun_disc,
@@ -42,6 +43,7 @@ def light_json(light: MapLight, files: Sequence[str], time: str | None = None) -
         "sun": {
             "is_in_map": light.sun_is_in_map,
             "direction": light.sun_direction,
+            "target_direction": light.target_sun_direction,
             "azimuth_deg": degrees(light.sun_azimuth),
             "elevation_deg": degrees(light.sun_elevation),
             "distance_au": light.sun_distance,

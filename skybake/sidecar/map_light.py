@@ -12,7 +12,7 @@ from skybake.constants import ASTRONOMICAL_UNIT
 from skybake.image.light import Light, Triple, light_of_scene
 from skybake.image.meter import scene_ev
 from skybake.image.scene import Scene
-from skybake.image.settings import Lighting
+from skybake.image.settings import Lighting, MapSettings
 from skybake.optics.spectrum import star_at
 from skybake.preset import Planet
 
@@ -33,6 +33,12 @@ class MapLight(Light):
         Luminance that a pixel value of 1 stands for. [cd m⁻²]
     rotation : float
         Compass bearing that the map's -Z looks to. [rad]
+    target : str or None
+        Program that the map is for, a name of `skybake.image.target.TARGETS`.
+    target_turn : float
+        How far the map is turned for that program, which is a part of `rotation`. [rad]
+    target_sun_direction : tuple of float or None
+        Unit vector toward the sun in the axes of that program.
     sun_disc : str
         Which light the map holds, see `skybake.image.settings.Lighting`.
     sun_azimuth, sun_elevation : float
@@ -55,6 +61,9 @@ class MapLight(Light):
     colorspace: str
     white_luminance: float
     rotation: float
+    target: str | None
+    target_turn: float
+    target_sun_direction: Triple | None
     sun_disc: str
     sun_azimuth: float
     sun_elevation: float
@@ -90,7 +99,8 @@ def map_light(scene: Scene, light: Light | None = None) -> MapLight:
     light : Light, optional
         Its light, if that is known.
     """
-    settings = scene.settings
+    settings, target = scene.settings, scene.settings.encoding.target
+    turn, sun_direction = (0.0, None) if target is None else _in_target(settings, target)
     normal, _ = scene.sun_xyz()
     star = star_at(scene.planet.star, settings.lighting.sun_distance)
     return MapLight(
@@ -100,6 +110,9 @@ def map_light(scene: Scene, light: Light | None = None) -> MapLight:
         colorspace=settings.encoding.colorspace,
         white_luminance=settings.encoding.white_luminance,
         rotation=settings.view.rotation,
+        target=target,
+        target_turn=turn,
+        target_sun_direction=sun_direction,
         sun_disc=settings.lighting.sun_disc,
         sun_azimuth=settings.lighting.sun_azimuth,
         sun_elevation=settings.lighting.sun_elevation,
@@ -120,6 +133,15 @@ def disc_diameter(planet: Planet, lighting: Lighting) -> float:
     """Angular diameter of the sun, or of the size that its disc is to be drawn in. [rad]"""
     star = star_at(planet.star, lighting.sun_distance)
     return lighting.sun_size or 2.0 * star.angular_radius
+
+
+def _in_target(settings: MapSettings, name: str) -> tuple[float, Triple]:
+    """Return how far a map is turned for a program, and where the sun is in it."""
+    from skybake.image.target import find_target
+    from skybake.image.target_sun import target_sun_direction
+
+    turn = find_target(name).turn(settings.view.projection.name)
+    return turn, target_sun_direction(settings, name)
 
 
 def _colour(scene: Scene, xyz: np.ndarray) -> Triple:

@@ -82,7 +82,9 @@ def test_a_command_loads_no_other(tmp_path):
     modules = json.loads(output.splitlines()[-1])[1]
     assert not {"numba", "scipy", "colour", "ephem"} & set(modules)
     commands = {name.removeprefix("skybake.commands.") for name in modules}
-    assert not {"sequence", "presets", "preview", "probe", "cache"} & commands
+    assert not {"sequence", "presets", "preview", "probe", "cache", "chart", "targets"} & commands
+    # Nor what maps without a target need nothing of.
+    assert "skybake.image.target" not in modules
 
 
 def test_choices_are_those_of_the_engine():

@@ -163,3 +163,10 @@ def test_options_that_do_not_go_together_are_one_line(tmp_path, monkeypatch, cas
     assert result.stderr.count("\n") == 1
     assert message.strip() in result.stderr
     assert listing(tmp_path) == []
+
+
+def test_a_chart_has_no_layers(tmp_path):
+    result = invoke("chart", "--layers", "-o", tmp_path / "a.exr")
+
+    assert (result.exit_code, result.stderr) == (2, "skybake: --layers: a chart has none\n")
+    assert listing(tmp_path) == []

@@ -8,7 +8,7 @@ import OpenImageIO
 import pytest
 
 from skybake.baking import bake
-from skybake.formats.reader import read_image
+from skybake.formats.reader import read_attributes, read_image
 from skybake.image.settings import map_settings
 from tests.cli.runs import SMALL, invoke, listing
 
@@ -46,6 +46,7 @@ def test_json_says_what_was_baked(folder):
     assert told["sun_distance_au"] == 1.0
     assert told["sun_angular_diameter_deg"] == pytest.approx(0.5329, abs=1e-4)
     assert told["warnings"] == []
+    assert told["from_below_lux"] is None
     assert (told["sun_azimuth_deg"], told["sun_elevation_deg"]) == (90.0, 30.0)
     assert told["sun_colour"] == pytest.approx(baked.sun_colour, rel=1e-9)
     assert 4500.0 < told["sun_colour_temperature_k"] < 5200.0
@@ -53,7 +54,8 @@ def test_json_says_what_was_baked(folder):
     expected = [strength * component for component in baked.sun_colour]
     assert told["sun_irradiance"] == pytest.approx(expected, rel=1e-9)
     assert (told["sun_disc"], told["lights"]) == ("include", [])
-    assert len(told) == 27
+    assert (told["target"], told["target_sun_direction"]) == (None, None)
+    assert len(told) == 30
 
 
 def test_the_suggested_exposure_is_that_of_a_preview():
@@ -295,3 +297,17 @@ def test_a_file_is_replaced(folder):
     render(*SMALL, "--sun", "60", "-o", "a.exr")
     assert Path("a.exr").read_bytes() != before
     assert listing(folder) == ["a.exr"]
+
+
+def test_the_light_from_below_is_told_where_the_ground_is_not_shown(folder):
+    result = invoke("render", *SMALL, "--below-horizon", "extend", "-o", "a.exr", "--json", "-q")
+    by_map, by_ground = json.loads(result.stdout)["from_below_lux"]
+    attributes = read_attributes(folder / "a.exr")
+    assert attributes["skybake:illuminanceFromBelow"] == pytest.approx(by_map)
+    assert attributes["skybake:groundIlluminanceFromBelow"] == pytest.approx(by_ground)
+    assert json.loads(attributes["skybake:recipe"])["map"]["below_horizon"] == "extend"
+    shown = invoke("render", *SMALL, "--below-horizon", "black", "-o", "b.exr")
+    assert f" lx, instead of {by_ground:.5g} lx by the ground" in shown.stdout
+    refused = invoke("render", *SMALL, "--below-horizon", "black", "--sun-disc", "only")
+    assert refused.exit_code == 2
+    assert "--below-horizon: cannot be combined with --sun-disc only" in refused.stderr

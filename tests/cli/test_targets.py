@@ -23,10 +23,11 @@ USAGE = """
 --target blender --projection cubemap    => --projection: must be equirect for the target blender
 --target usd --projection fisheye        => --projection: must be equirect for the target usd
 --target three --cube-space flip-x       => --cube-space: needs --projection cubemap
---target filament --projection cubemap --cube-space flip-x => --cube-space: must be world for the
+--target unity --projection cubemap --cube-space world => --cube-space: must be flip-z for the
 --target mitsuba --equirect-rows centres => --equirect-rows: must be poles for the target mitsuba
+--target three --projection cubemap -o a.ktx2 => --target three: needs an output .hdr or .exr
 --target three --sun-soft                => --sun-soft: needs --sun-disc include with --target three
---target unreal --pixel half             => --pixel: needs an .exr output
+--target unreal --pixel half             => --pixel: needs an .exr, .ktx2 or .dds
 --face-names posx                        => --face-names: needs --projection cubemap
 --projection cubemap --face-names top    => --face-names: must be px, posx, +X, right or six
 --projection cubemap --cube-layout cross --face-names posx => --face-names: must belong to the cube
@@ -57,6 +58,7 @@ def direction_of(chart):
         ("--face-names right -o bright_{face}_16.exr", 6),
         ("--face-names rt,lf,up,dn,ft,bk -o {face}.exr", 6),
         ("--cube-layout vertical-cross -o a.exr", 1),
+        ("--cube-layout row -o a.exr", 1),
     ],
 )
 def test_files_say_where_their_pixels_look(tmp_path, monkeypatch, space, options, count):

@@ -12,7 +12,8 @@ from skybake.image.light import light_of_scene
 from skybake.image.scene import Scene
 from skybake.image.settings import map_settings
 from skybake.jit.workers import Workers
-from skybake.preset import PresetChanges, load_preset
+from skybake.optics.changes import PresetChanges
+from skybake.preset import load_preset
 from skybake.sky.sky import Sky
 from tests.cli.runs import render
 from tests.clouds.tile_worlds import one_cloud, tile_world

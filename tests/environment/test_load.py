@@ -130,6 +130,13 @@ def test_what_a_caller_says_comes_before_what_the_file_says(baked):
     assert found.space == find_colour_space("acescg")
 
 
+@pytest.mark.parametrize("layers", [False, True])
+def test_a_sun_in_a_part_of_its_own_is_added(baked, layers):
+    whole = load_environment(baked("equirect", 128))
+    apart = load_environment(baked("equirect", 128, sun_disc="separate", layers=layers))
+    np.testing.assert_allclose(apart.pixels[0], whole.pixels[0], rtol=1e-3)
+
+
 def broken(pixels, suffix=".exr", **options):
     def make(folder):
         path = folder / f"a{suffix}"

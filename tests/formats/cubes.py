@@ -127,13 +127,38 @@ console.log(JSON.stringify(file));
 """
 
 
+_THREE = """
+import { readFileSync } from 'node:fs';
+const { KTX2Loader } = await import(process.argv[1]);
+const loader = new KTX2Loader();
+loader.workerConfig = {};
+const { buffer } = new Uint8Array(readFileSync(process.argv[2]));
+const texture = await new Promise((done, fail) => loader.parse(buffer, done, fail));
+console.log(JSON.stringify({
+  colorSpace: texture.colorSpace,
+  width: texture.image.width,
+  levels: texture.mipmaps.map(({ data }) => Buffer.from(
+    data.buffer, data.byteOffset, data.byteLength).toString('base64')),
+}));
+"""
+
+
 def ktx_parse(path):
     """A KTX 2 file as the package ktx-parse of npm reads it; skips where it is not installed."""
+    return _node(_KTX_PARSE, "ktx-parse/dist/index.mjs", path)
+
+
+def three_texture(path):
+    """The texture that three.js makes of a KTX 2 file; skips where it is not installed."""
+    return _node(_THREE, "three/examples/jsm/loaders/KTX2Loader.js", path)
+
+
+def _node(code, module, path):
     node = shutil.which("node")
     folders = [Path(one) for one in os.environ.get("NODE_PATH", "").split(os.pathsep) if one]
-    found = [one / "ktx-parse/dist/index.mjs" for one in folders]
-    module = next((one for one in found if one.is_file()), None)
-    if node is None or module is None:
-        pytest.skip("node with ktx-parse in a folder of NODE_PATH is not installed")
-    command = [node, "--input-type=module", "-e", _KTX_PARSE, str(module), str(path)]
+    found = next((one / module for one in folders if (one / module).is_file()), None)
+    if node is None or found is None:
+        name = module.partition("/")[0]
+        pytest.skip(f"node with {name} in a folder of NODE_PATH is not installed")
+    command = [node, "--input-type=module", "-e", code, str(found), str(path)]
     return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)

@@ -9,7 +9,7 @@ import pytest
 from skybake.errors import InputError, OutputError
 from skybake.formats.ktx2 import write_ktx2
 from skybake.formats.whole_files import WholeFiles
-from tests.formats.cubes import VK, cube_levels, decode, ktx_parse, read_ktx2
+from tests.formats.cubes import VK, cube_levels, decode, ktx_parse, read_ktx2, three_texture
 from tests.formats.maps import listing
 
 PIXELS = tuple(VK)
@@ -76,6 +76,17 @@ def test_ktx_parse_reads_what_was_written(tmp_path, pixel):
     assert (block["colorModel"], block["colorPrimaries"], block["transferFunction"]) == (1, 1, 1)
     stored = [base64.b64decode(level["bytes"]) for level in found["levels"]]
     assert [decode(one, pixel).size for one in stored] == [level.size for level in levels]
+
+
+@pytest.mark.parametrize("pixel", PIXELS)
+def test_three_reads_texels_and_space_of_compressed_levels(tmp_path, pixel):
+    levels = cube_levels()
+    attributes = {"colorInteropID": "lin_rec709_scene"}
+    write_ktx2(tmp_path / "a.ktx2", levels, pixel=pixel, attributes=attributes)
+    found, stored = three_texture(tmp_path / "a.ktx2"), read_ktx2(tmp_path / "a.ktx2")[1]
+
+    assert (found["colorSpace"], found["width"]) == ("srgb-linear", 16)
+    assert [base64.b64decode(level) for level in found["levels"]] == stored
 
 
 def samples(descriptor):

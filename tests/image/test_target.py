@@ -9,13 +9,18 @@ import math
 import numpy as np
 import pytest
 
+from skybake.baking import default_path
+from skybake.baking.orientation_chart import bake_orientation_chart
 from skybake.errors import InputError
-from skybake.image.settings import map_settings
+from skybake.image.settings import Encoding, MapSettings, View, map_settings
 from skybake.image.target import TARGETS, find_target
 from skybake.image.target_model import SUBJECTS
 from skybake.image.target_sun import target_sun_direction
+from skybake.preset import load_preset
+from skybake.projection import Fisheye
 from skybake.projection.cubemap import FACES
 from tests.baking.maps import pixels
+from tests.formats.cubes import VK, read_ktx2
 from tests.peers.orientation import bake_directions, in_axes, worst_angle
 
 PI = math.pi
@@ -37,7 +42,6 @@ FORMULAS = {
 CUBES = {
     "three": lambda x, y, z: (-x, y, z),
     "unity": lambda x, y, z: (x, y, z),
-    "filament": lambda x, y, z: (x, y, z),
 }
 
 
@@ -92,11 +96,15 @@ def test_a_cubemap_has_directions_where_the_program_samples_it(tmp_path, name):
     assert worst_angle(seen, brightest) < 0.7
 
 
-def test_cubes_of_bevy_hold_the_light_with_z_negated():
-    settings = map_settings(target="bevy")
-    assert settings.view.projection.name == "cubemap"
-    assert settings.view.projection.space == "flip-z"
-    assert settings.view.rotation == 0.0
+def test_a_ktx2_has_directions_where_bevy_samples_it(tmp_path):
+    """It negates z; nothing else is turned."""
+    (file,), brightest = bake_directions(tmp_path, "bevy", "cubemap", 64)
+    assert file.suffix == ".ktx2"
+    header, levels, _, _ = read_ktx2(file)
+    assert header["vk"] == VK["float"]
+    texels = np.frombuffer(levels[0], np.float32).reshape(6, 64, 64, 4)
+    x, y, z = np.array(in_axes("bevy")).T
+    assert worst_angle(sample_cube(texels[..., :3], x, y, -z), brightest) < 0.1
 
 
 @pytest.mark.parametrize("target", TARGETS.values(), ids=lambda target: target.name)
@@ -161,3 +169,14 @@ def test_names_of_faces_are_in_one_order():
     settings = map_settings("cubemap", 4, target="three", face_names="posx")
     faces = [canvas.face for canvas in settings.view.projection.canvases()]
     assert [name[0] + name[-1] for name in faces] == list(FACES)
+
+
+def test_a_map_that_was_put_together_by_hand_is_checked_with_its_files(tmp_path):
+    settings = MapSettings(View(projection=Fisheye(16)), encoding=Encoding(target="unreal"))
+    for write in (
+        lambda: default_path(load_preset("earth"), settings),
+        lambda: bake_orientation_chart(tmp_path / "a.hdr", settings),
+    ):
+        with pytest.raises(InputError, match="projection: must be equirect for the target unreal"):
+            write()
+    assert not list(tmp_path.iterdir())

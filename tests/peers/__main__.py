@@ -1,5 +1,7 @@
 """``python -m tests.peers``: light a scene in other programs by our files, and measure it.
 
+After that they are asked where they find the directions that maps encode.
+
 A program that is not there is reported. The exit status is 1 if a measurement of one that is
 there is beyond its limit, or if it fails.
 """
@@ -11,7 +13,7 @@ from pathlib import Path
 
 import click
 
-from tests.peers import blender, mitsuba, three
+from tests.peers import blender, mitsuba, orientation, three
 from tests.peers.files import bake_files
 from tests.peers.measure import measure
 from tests.peers.peer import AbsentError
@@ -33,17 +35,17 @@ def main():
     if unknown:
         parser.error(f"unknown: {', '.join(unknown)}")
     with tempfile.TemporaryDirectory(prefix="skybake-peers-") as folder:
-        baked = bake_files(Path(folder))
-        outcomes = [
-            _run(name, baked, Path(folder), options.pictures) for name in options.names or PEERS
-        ]
+        outcomes = [_run(name, Path(folder), options.pictures) for name in options.names or PEERS]
+    click.echo("Directions")
+    outcomes.append(orientation.main(options.names or orientation.ASKED) == 0)
     return 0 if all(outcomes) else 1
 
 
-def _run(name, baked, folder, pictures):
+def _run(name, folder, pictures):
     """Whether a program is absent, or all its measurements are within their limits."""
     own = folder / name
     own.mkdir()
+    baked = bake_files(own, name)
     try:
         rendered = PEERS[name].render(baked, own)
     except AbsentError as reason:

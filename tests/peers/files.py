@@ -33,14 +33,14 @@ class Files:
     sky: Sky
 
 
-def bake_files(folder):
-    """Bake what the programs are given."""
+def bake_files(folder, target):
+    """Bake what a program is given, by the name of its target."""
     values = {"sun_elevation": SUN_ELEVATION, "sun_azimuth": SUN_AZIMUTH, "pixel": "float"}
     names = folder / "sky.light.json", folder / "sky.py"
-    settings = map_settings(size=WIDTH, sun_disc="exclude", **values)
+    settings = map_settings(size=WIDTH, target=target, **{**values, "sun_disc": "exclude"})
     baked = bake("earth", folder / "sky.exr", settings, lights=names)
     full = bake("earth", folder / "full.exr", map_settings(size=JUDGE_WIDTH, **values))
-    sky = Sky(read_pixels(full.files[0]), np.array(baked.sun_direction))
+    sky = Sky(read_pixels(full.files[0]), np.array(full.sun_direction))
     return Files(baked.files[0], *names, sky)
 
 

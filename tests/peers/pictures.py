@@ -6,10 +6,11 @@ from PIL import Image
 from skybake.image.picture import code_values
 from skybake.image.settings import Encoding
 
-EV = 14.0
+EV, COLOURS = 14.0, 256
 
 
 def write_picture(path, pixels):
-    """Write linear pixels as a PNG, all through the same display transform."""
+    """Write linear pixels as a PNG of a palette, all through the same display transform."""
     shown = code_values(np.ascontiguousarray(pixels, np.float32), Encoding(), EV, "aces1", None)
-    Image.fromarray(shown).save(path, optimize=True)
+    palette = Image.fromarray(shown).quantize(COLOURS, dither=Image.Dither.NONE)
+    palette.save(path, optimize=True)

@@ -3,8 +3,6 @@
 import * as THREE from 'three';
 import { EXRLoader } from 'three/addons/loaders/EXRLoader.js';
 
-const TURN = -Math.PI / 2; // The middle of an equirect map is +X in three.js, and +Z here.
-
 export async function renderViews(settings) {
   const renderer = new THREE.WebGLRenderer({ antialias: false });
   renderer.shadowMap.enabled = true;
@@ -27,11 +25,9 @@ function lit({ map, sun }, objects) {
   const scene = new THREE.Scene();
   scene.environment = map;
   scene.background = map;
-  scene.environmentRotation.y = TURN;
-  scene.backgroundRotation.y = TURN;
   const light = new THREE.DirectionalLight();
   light.color.setRGB(...sun.irradiance, THREE.LinearSRGBColorSpace);
-  light.position.set(...sun.direction).multiplyScalar(20);
+  light.position.set(...sun.target_direction).multiplyScalar(20);
   light.castShadow = true;
   light.shadow.mapSize.set(4096, 4096);
   Object.assign(light.shadow.camera, { left: -4, right: 4, top: 4, bottom: -4, far: 40 });

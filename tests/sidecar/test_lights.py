@@ -1,5 +1,6 @@
 """The lights beside a map light a scene as the map with the sun's disc does."""
 
+import ast
 import json
 import math
 
@@ -150,6 +151,7 @@ def test_the_json_agrees_with_the_file_of_the_map(folder):
         "files": ["sky.exr"],
         "projection": "equirect",
         "rotate_deg": 25.0,
+        "target": None,
         "colorspace": "acescg",
         "white_luminance_cd_m2": pytest.approx(39321.6),
         "sun_disc": "exclude",
@@ -168,6 +170,40 @@ def test_the_json_tells_the_suns_colour_in_the_space_of_the_map(folder):
     assert rec709_from("acescg") @ sun["colour"] == pytest.approx(in_rec709, rel=1e-5)
     assert sun["angular_diameter_deg"] == pytest.approx(0.5329, abs=1e-4)
     assert (sun["azimuth_deg"], sun["elevation_deg"]) == (281.0, 28.0)
+
+
+def values_of(script):
+    """What a script for Blender assigns to names in capitals."""
+    lines = [line.partition("#")[0] for line in script.splitlines() if line[:1].isupper()]
+    return {
+        name.strip(): ast.literal_eval(value.strip())
+        for name, equals, value in (line.partition(" = ") for line in lines)
+        if equals
+    }
+
+
+def test_in_blender_north_is_y_but_of_a_map_that_is_turned(folder):
+    script = values_of((folder / "sky.py").read_text("utf-8"))
+    x, y, z = read_json(folder)["sun"]["direction"]
+    assert script["SUN_DIRECTION"] == pytest.approx((x, -z, y), abs=1e-8)
+    assert (script["MAP"], script["COLOUR_SPACE"], script["TURN"]) == ("sky.exr", "ACEScg", 90.0)
+
+
+@pytest.mark.parametrize(("target", "turn"), [("blender", 0.0), ("usd", 90.0)])
+def test_a_map_that_is_turned_for_blender_needs_no_turn_there(tmp_path, target, turn):
+    settings = map_settings(size=64, target=target, **SUN)
+    names = [tmp_path / "a.json", tmp_path / "a.py"]
+    bake("earth", tmp_path / "a.exr", settings, lights=names)
+    script, sun = values_of(names[1].read_text()), json.loads(names[0].read_text())["sun"]
+    east_north_up = (
+        math.sin(SUN["sun_azimuth"]) * math.cos(SUN["sun_elevation"]),
+        math.cos(SUN["sun_azimuth"]) * math.cos(SUN["sun_elevation"]),
+        math.sin(SUN["sun_elevation"]),
+    )
+    assert script["TURN"] == pytest.approx(turn, abs=1e-9)
+    assert script["SUN_DIRECTION"] == pytest.approx(east_north_up, abs=1e-8)
+    if target == "blender":
+        assert sun["target_direction"] == pytest.approx(east_north_up, abs=1e-8)
 
 
 def test_a_soft_disc_is_told_in_the_size_that_it_is_drawn_in(tmp_path):
@@ -202,6 +238,22 @@ def test_files_of_lights_find_the_map_from_their_own_folder(tmp_path):
     bake("earth", tmp_path / "sky.exr", settings, lights=[path])
     files = json.loads(path.read_text())["map"]["files"]
     assert files == [f"../sky_{face}.exr" for face in ("px", "nx", "py", "ny", "pz", "nz")]
+
+
+def test_a_file_of_lights_that_is_named_twice_is_written_once(tmp_path):
+    name = tmp_path / "a.json"
+    baked = bake("earth", tmp_path / "a.exr", map_settings(size=64), lights=[name, str(name)])
+    assert baked.light_files == (name,)
+    assert json.loads(name.read_text())["map"]["files"] == ["a.exr"]
+
+
+def test_lights_and_map_appear_together_or_not_at_all(small_disk):
+    full = small_disk / "filler"
+    full.write_bytes(bytes(60 * 1024))
+    settings = map_settings(size=16)
+    with pytest.raises(OutputError, match=r"a\.json: must be writable, got No space"):
+        bake("earth", small_disk / "a.exr", settings, lights=[small_disk / "a.json"])
+    assert list(small_disk.iterdir()) == [full]
 
 
 @pytest.mark.parametrize(

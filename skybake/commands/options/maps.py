@@ -27,7 +27,7 @@ _SHAPES = {
 _ENCODINGS = (
     *("colorspace", "units", "ev", "pixel", "compression", "clamp_negative"),
     *("omit_exposure", "mips", "layers", "target", "method"),
-    *("sun_disc", "sun_size", "sun_soft", "sun_strength"),
+    *("sun_disc", "sun_size", "sun_soft", "sun_strength", "below_horizon"),
 )
 
 map_options = options_together(
@@ -181,6 +181,14 @@ map_options = options_together(
         help="Multiply the light of the disc, not of the sky.",
     ),
     click.option(
+        "--below-horizon",
+        type=click.Choice(values.BELOW_HORIZON),
+        default="ground",
+        show_default=True,
+        help="What is below the true horizon: the ground, the horizon's light softly extended "
+        "downward, for scenes that bring a floor of their own, or black.",
+    ),
+    click.option(
         "--method",
         type=click.Choice(values.METHODS),
         default="full",
@@ -230,6 +238,7 @@ def map_needs(options: Mapping[str, Any]) -> Needs:
             "needs an .exr output that holds the sky, without --mips",
         ),
         "units": (options["ev"] is None, "cannot be combined with --ev"),
+        "below_horizon": (disc != "only", "cannot be combined with --sun-disc only"),
     }
 
 

@@ -29,6 +29,9 @@ def print_summary(baked: Baked, settings: MapSettings, seconds: float) -> None:
         f"it), sky {baked.sky_illuminance:.5g} lx on the horizontal; "
         f"1.0 = {baked.white_luminance:.6g} cd/m2; {baked.pixel}; {seconds:.2f} s"
     )
+    if baked.from_below is not None:
+        by_map, by_ground = baked.from_below
+        click.echo(f"from below {by_map:.5g} lx, instead of {by_ground:.5g} lx by the ground")
     if baked.clamped:
         click.echo(f"{baked.clamped} negative values, out of gamut, were stored as 0")
     for line in target_lines(settings):
@@ -93,6 +96,7 @@ def result(
         "sun_disc": light.sun_disc,
         "pixel": baked.pixel,
         "clamped": baked.clamped,
+        "from_below_lux": None if baked.from_below is None else list(baked.from_below),
         "warnings": list(baked.warnings),
         "lights": [str(path) for path in baked.light_files],
         "preview": None if baked.preview is None else str(baked.preview),

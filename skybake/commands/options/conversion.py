@@ -1,0 +1,168 @@
+"""What a map is made into, and what is known of the one that is read."""
+
+from __future__ import annotations
+
+import click
+
+from skybake.commands.options import values
+from skybake.commands.options.rules import options_together
+
+_SAME = "that of IN"
+
+conversion_options = options_together(
+    click.option(
+        "--projection",
+        type=click.Choice(values.PROJECTIONS),
+        show_default=_SAME,
+        help="Kind of map, as of 'skybake render'.",
+    ),
+    click.option(
+        "--size",
+        metavar="WxH|EDGE",
+        type=values.size,
+        show_default="as finely divided as IN",
+        help="Width and height, or edge of a cubemap's face or of a square map.",
+    ),
+    click.option(
+        "--fov",
+        metavar="ANGLE",
+        type=values.field_of_view,
+        show_default="180deg for a fisheye, 50deg for perspective",
+        help="Angle that the width of a fisheye or perspective picture covers.",
+    ),
+    click.option(
+        "--look",
+        metavar="AZIMUTH,ELEVATION",
+        type=values.look,
+        show_default="180,90 for a fisheye, 180,0 for perspective",
+        help="Where the middle of such a picture looks.",
+    ),
+    click.option(
+        "--cube-layout",
+        type=click.Choice(values.CUBE_LAYOUTS),
+        show_default="faces, or that of IN",
+        help="Six files px nx py ny pz nz, one horizontal or vertical cross, row or column, or one "
+        "OpenEXR cube.",
+    ),
+    click.option(
+        "--cube-space",
+        type=click.Choice(values.CUBE_SPACES),
+        show_default="world, or that of IN",
+        help="Axes of a cubemap: the map's own, or with x or z negated.",
+    ),
+    click.option(
+        "--face-names",
+        metavar="STYLE|A,B,C,D,E,F",
+        show_default="px",
+        help="How six files are named, as of 'skybake render'.",
+    ),
+    click.option(
+        "--equirect-rows",
+        type=click.Choice(values.EQUIRECT_ROWS),
+        show_default="centres, or those of IN",
+        help="Where the first and the last row look: half a row beside the zenith and the nadir, "
+        "or at them.",
+    ),
+    click.option(
+        "--rotate",
+        metavar="ANGLE",
+        type=values.bearing,
+        show_default=_SAME,
+        help="Compass bearing of the new map's -Z; of IN that is 0deg unless metadata say else.",
+    ),
+    click.option(
+        "--colorspace",
+        type=click.Choice(values.COLOUR_SPACES),
+        show_default=_SAME,
+        help="Linear, scene-referred space of the pixels.",
+    ),
+    click.option(
+        "--units",
+        type=click.Choice(values.UNITS),
+        show_default=_SAME,
+        help="What a pixel value of 1 stands for: 1.2 * 2^15 cd/m2, or 1 cd/m2.",
+    ),
+    click.option(
+        "--ev",
+        metavar="N",
+        type=float,
+        help="Let a pixel value of 1 stand for 1.2 * 2^N cd/m2 instead.",
+    ),
+    click.option(
+        "--pixel",
+        type=click.Choice(values.PIXELS),
+        show_default="auto",
+        help="Stored type; auto takes half where it holds every value. rgb9e5 and r11g11b10 are of "
+        "a .ktx2.",
+    ),
+    click.option(
+        "--compression",
+        metavar="NAME[:LEVEL]",
+        show_default="zip",
+        help="Of an EXR: none, rle, zips, zip[:1-9], piz, pxr24, b44, b44a, dwaa[:0-135], ...; "
+        "of a .ktx2: zstd (default) or none.",
+    ),
+    click.option(
+        "--mips",
+        is_flag=True,
+        help="Write smaller copies with the map, down to one pixel; of an equirect .exr or a "
+        "cubemap whose size is a power of two.",
+    ),
+    click.option("--clamp-negative", is_flag=True, help="Set negative values (out of gamut) to 0."),
+    click.option(
+        "--omit-exposure",
+        is_flag=True,
+        help="Leave the line EXPOSURE out of a .hdr, for programs that divide by it.",
+    ),
+    click.option(
+        "--input-projection",
+        type=click.Choice(values.PROJECTIONS),
+        show_default="what metadata or the shape of IN say",
+        help="Kind of map that IN is.",
+    ),
+    click.option(
+        "--input-cube-space",
+        type=click.Choice(values.CUBE_SPACES),
+        show_default="world",
+        help="Axes of IN, a cubemap.",
+    ),
+    click.option(
+        "--input-fov",
+        metavar="ANGLE",
+        type=values.field_of_view,
+        show_default="180deg for a fisheye, 50deg for perspective",
+        help="Angle that the width of IN covers, a fisheye or perspective picture.",
+    ),
+    click.option(
+        "--input-look",
+        metavar="AZIMUTH,ELEVATION",
+        type=values.look,
+        show_default="180,90 for a fisheye, 180,0 for perspective",
+        help="Where the middle of such a picture looks.",
+    ),
+    click.option(
+        "--input-rotate",
+        metavar="ANGLE",
+        type=values.bearing,
+        show_default="what metadata say, or 0deg",
+        help="Compass bearing of the -Z of IN.",
+    ),
+    click.option(
+        "--input-colorspace",
+        type=click.Choice(values.COLOUR_SPACES),
+        show_default="what tags say, or lin_rec709",
+        help="Space of the pixels of IN.",
+    ),
+    click.option(
+        "--input-units",
+        type=click.Choice(values.UNITS),
+        show_default="what tags say",
+        help="What a pixel value of 1 stands for in IN.",
+    ),
+    click.option(
+        "--input-ev",
+        metavar="N",
+        type=float,
+        help="Let a pixel value of 1 stand for 1.2 * 2^N cd/m2 in IN.",
+    ),
+)
