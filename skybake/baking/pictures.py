@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+from skybake.baking.losses import HalfLoss
 from skybake.formats.cube_file import is_cube_file
 from skybake.formats.spec import MapSpec
 from skybake.formats.whole_files import WholeFiles
@@ -15,6 +16,9 @@ from skybake.image.layers import Pixels
 from skybake.image.parts import part_names
 from skybake.image.raster import Raster
 from skybake.image.scene import Scene
+from skybake.jit.workers import Workers
+
+BAND_ROWS = 128
 
 Band = Pixels | tuple[Pixels, ...]
 
@@ -89,6 +93,45 @@ def open_pictures(
     each = {path: spec(raster) for path, raster in zip(paths, rasters, strict=True)}
     with open_maps(each, files) as writers:
         yield [_picture(raster, writers[path]) for raster, path in zip(rasters, each, strict=True)]
+
+
+def write_pictures(
+    pictures: Sequence[Picture],
+    workers: Workers,
+    progress: Callable[[float], None] | None,
+    loss: HalfLoss | None,
+) -> None:
+    """Write pictures band after band, each of which is computed while the last is written.
+
+    Parameters
+    ----------
+    pictures : sequence of Picture
+        Of `open_pictures`.
+    workers : Workers
+        Threads that do the work.
+    progress : callable or None
+        Called with the share that is done, from 0 to 1.
+    loss : HalfLoss or None
+        Counts what files lose of the values.
+    """
+    bands = [
+        (picture, first, min(first + BAND_ROWS, picture.height))
+        for picture in pictures
+        for first in range(0, picture.height, BAND_ROWS)
+    ]
+
+    def compute(band: tuple[Picture, int, int]) -> Any:
+        picture, first, last = band
+        rows = picture.rows(first, last)
+        if loss is not None:
+            loss.add(rows[0] if isinstance(rows, tuple) else rows)
+        return picture.writer.ready(rows, workers)
+
+    computed = workers.ahead(compute, bands)
+    for i, ((picture, first, last), rows) in enumerate(zip(bands, computed, strict=True)):
+        picture.writer.write_ready(first, last, rows)
+        if progress is not None:
+            progress((i + 1) / len(bands))
 
 
 def _picture(raster: Raster, writer: RowWriter) -> Picture:

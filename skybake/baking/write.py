@@ -6,11 +6,10 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from skybake.baking.losses import HalfLoss, scene_warnings
 from skybake.baking.paths import default_path, map_paths
-from skybake.baking.pictures import Picture, open_pictures
+from skybake.baking.pictures import open_pictures, write_pictures
 from skybake.baking.pixel_type import PixelType, fitting_pixel, value_range
 from skybake.errors import InputError
 from skybake.formats.cube_file import check_cube_encoding, is_cube_file
@@ -24,11 +23,8 @@ from skybake.image.raster import Raster
 from skybake.image.recipe import recipe_attributes
 from skybake.image.scene import Scene
 from skybake.image.settings import MapSettings
-from skybake.jit.workers import Workers
 from skybake.preset import Planet, load_preset
 from skybake.sidecar.map_light import MapLight, map_light
-
-BAND_ROWS = 128
 
 FROM_BELOW = ("skybake:illuminanceFromBelow", "skybake:groundIlluminanceFromBelow")
 """Attributes of maps that do not show the ground. [lx]"""
@@ -267,7 +263,7 @@ def bake_scene(
             loss = None
             if is_radiance or (encoding.pixel == stored and stored != "float"):
                 loss = HalfLoss("half" if is_radiance else stored)
-            _write(pictures, scene.workers, progress, loss)
+            write_pictures(pictures, scene.workers, progress, loss)
             if loss is not None:
                 lost = loss.warning(paths[0])
                 warnings += [] if lost is None else [lost]
@@ -304,29 +300,3 @@ def _from_below(scene: Scene) -> tuple[float, float] | None:
 
 def _ignore(_: str) -> None:
     pass
-
-
-def _write(
-    pictures: Sequence[Picture],
-    workers: Workers,
-    progress: Progress | None,
-    loss: HalfLoss | None,
-) -> None:
-    bands = [
-        (picture, first, min(first + BAND_ROWS, picture.height))
-        for picture in pictures
-        for first in range(0, picture.height, BAND_ROWS)
-    ]
-
-    def compute(band: tuple[Picture, int, int]) -> Any:
-        picture, first, last = band
-        rows = picture.rows(first, last)
-        if loss is not None:
-            loss.add(rows[0] if isinstance(rows, tuple) else rows)
-        return picture.writer.ready(rows, workers)
-
-    computed = workers.ahead(compute, bands)
-    for i, ((picture, first, last), rows) in enumerate(zip(bands, computed, strict=True)):
-        picture.writer.write_ready(first, last, rows)
-        if progress is not None:
-            progress((i + 1) / len(bands))

@@ -185,6 +185,17 @@ def _threshold(optical_depth: float) -> float:
     return LEAST_DEPTH * min(optical_depth, 1.0)
 
 
+def mean_depth(field: CloudField) -> float:
+    """Return the mean optical depth of vertical columns."""
+    depths = np.empty((_COLUMNS, _COLUMNS), np.float32)
+
+    def measure(first: int, last: int) -> None:
+        _measure_columns(field, 0.0, depths, first, last)
+
+    ALL_CPUS.run_rows(_COLUMNS, measure, chunk=8)
+    return float(depths.mean(dtype=np.float64))
+
+
 def _mean_keeping_shifts(field: CloudField) -> npt.NDArray[np.float64]:
     """Return the shift of each blur with which the mean extinction is that without blur."""
     shifts = field.shift.copy()

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.cloud_fields.field import CloudField
+from skybake.cloud_fields.fit import mean_depth
 from skybake.cloud_fields.noise import random_map
 from skybake.cloud_fields.patches import erosion_at
 from skybake.cloud_fields.patching import vanishing_of
@@ -51,14 +52,12 @@ def field_of_age(build: Callable[[int], CloudField], seed: int, age: float) -> C
     for number, field in fields.items():
         lifted = float(first.shift[0] - field.shift[0])
         _merge_all(field, ages, number, lifted, merged)
-    # Generations differ by a factor that makes their optical depth what was asked for.
-    factor = sum(
-        float(np.maximum(1.0 - np.abs(ages - number), 0.0).mean() * field.extinction[0])
-        for number, field in fields.items()
+    whole = first._replace(distance=merged, extinction=tallest.extinction, top=tallest.top)
+    # Clouds are smaller while others take their place.
+    scale = mean_depth(first) / max(mean_depth(whole), 1e-9)
+    return with_clearance(
+        whole._replace(extinction=scale * whole.extinction, vanishing=vanishing_of(whole))
     )
-    extinction = factor / tallest.extinction[0] * tallest.extinction
-    whole = first._replace(distance=merged, extinction=extinction, top=tallest.top)
-    return with_clearance(whole._replace(vanishing=vanishing_of(whole)))
 
 
 def _ages(field: CloudField, seed: int, age: float) -> npt.NDArray[np.float64]:

@@ -8,12 +8,13 @@ from typing import NamedTuple
 import numpy as np
 
 from skybake.cloud_fields.build import build_field
-from skybake.cloud_fields.field import LINEAR, SURFACE, CloudField
+from skybake.cloud_fields.field import SURFACE, CloudField
 from skybake.cloud_fields.light_grid import light_grid
 from skybake.clouds.air import ClearAir
 from skybake.clouds.cloudscape import Cloudscape
 from skybake.clouds.directions import sun_vector
-from skybake.clouds.layer import Grid
+from skybake.clouds.layer import Floats, Grid
+from skybake.clouds.suns import suns_over
 from skybake.clouds.unlit import Layer
 from skybake.jit.workers import Workers
 from skybake.optics.medium import Array
@@ -29,29 +30,38 @@ class Quality(NamedTuple):
     ----------
     columns : int
         Voxels of light across the tile of a generated layer.
-    work : float
-        Of the ordinates, for the order that is chosen: voxels times `_WORK`.
+    voxels : int
+        Up to which those of a file are divided where they are thick; shared by several heights of
+        the sun, each of which takes memory.
+    work, work_of_file : float
+        Of the ordinates, for the order that is chosen: voxels times `_WORK`; of a generated layer,
+        and of a file's voxels.
     depth : float
         Optical depth of a step of the eye's rays, without forward peaks.
     """
 
     columns: int
+    voxels: int
     work: float
+    work_of_file: float
     depth: float
 
 
 QUALITIES = {
-    "draft": Quality(96, 3e8, 0.6),
-    "normal": Quality(160, 9e8, 0.4),
-    "high": Quality(224, 8e9, 0.2),
+    "draft": Quality(96, 640_000, 6e8, 2.3e9, 0.6),
+    "normal": Quality(144, 640_000, 9e8, 2.3e9, 0.4),
+    "high": Quality(192, 1_300_000, 8e9, 8e9, 0.2),
 }
 
-_WORK = {2: 624, 3: 1280, 5: 5760, 7: 17408}
+_WORK = {2: 624, 3: 1280, 4: 3480, 5: 5760, 7: 17408}
 """By order: directions times what each costs."""
 
 LAYERS_OF_DECK = 512
 VOXEL_DEPTH = 0.05
 """Optical depth, without forward peaks, of the voxels of a deck that is the same everywhere."""
+
+THICKEST = 2.5
+"""Optical depth of a voxel's side, on average over clouds, above which it is divided."""
 
 MIDDLE = 550.0
 """Wavelength whose phase function holds for what is scattered more than once. [nm]"""
@@ -115,29 +125,58 @@ def _layer(
     middle = build_phase(layer.phase, np.array([MIDDLE]))[:, 0]
     share = weights / weights.sum(axis=0)
     phase = build_phase(layer.phase, sky.wavelengths) @ share
-    grid = _grid(field, quality, workers)
-    if is_same_everywhere(grid):
+    sun = sun_vector(sky.sun_azimuth, sky.sun_elevation)
+    suns = len(suns_over(sun, sky.atmosphere.medium.r_bottom, sky.altitude, field.top))
+    grid = _grid(field, quality, quality.voxels // suns, workers)
+    if is_same_everywhere(grid.extinction):
         return Layer(field, _deck(grid), phase, middle, max(_WORK))
-    work = grid.extinction.size / quality.work
-    orders = [order for order, cost in _WORK.items() if cost * work <= 1.0]
+    most = quality.work if field.kind == SURFACE else quality.work_of_file
+    orders = [order for order, cost in _WORK.items() if cost * grid.extinction.size <= most]
     return Layer(field, grid, phase, middle, max(orders, default=min(_WORK)))
 
 
-def _grid(field: CloudField, quality: Quality, workers: Workers) -> Grid:
-    if field.kind != SURFACE:
-        # Values between voxels are linear again when they are looked up, not twice.
-        beyond = 0.5 * field.spacing[0] if field.kind == LINEAR else 0.0
-        return Grid(field.values, field.spacing, field.base + float(beyond))
+def _grid(field: CloudField, quality: Quality, most: int, workers: Workers) -> Grid:
     across = field.period / quality.columns
     height = min(0.5 * float(across.min()), (field.top - field.base) / 12.0)
-    made = light_grid(field, np.array([height, across[1], across[0]]), workers)
-    return Grid(made.values, made.spacing, made.base)
+    spacing = np.array([height, across[1], across[0]])
+    if field.kind != SURFACE:
+        spacing = field.spacing / voxel_parts(field, most)
+    made = light_grid(field, spacing, workers)
+    values = made.values
+    if field.kind != SURFACE and is_same_everywhere(field.values):
+        # Means of equal columns may differ in their last digits.
+        values = np.broadcast_to(values[:, :1, :1], values.shape)
+    return Grid(values, made.spacing, made.base)
 
 
-def is_same_everywhere(grid: Grid) -> bool:
-    """Whether a layer is a deck without structure."""
-    column = grid.extinction[:, :1, :1]
-    return bool((grid.extinction == column).all())
+def voxel_parts(field: CloudField, most: int) -> Array:
+    """Into how many parts a file's voxels are divided along z, y and x for their light.
+
+    Light is constant within a voxel while it is solved for, so that thick ones hide the bright
+    side of a cloud from those who look at it. Parts are halved along the thickest side until
+    they are no thicker than `THICKEST`, or until there would be more than `most` of them.
+    """
+    parts = np.ones(3)
+    values = field.values
+    if is_same_everywhere(values):
+        return parts
+    total = float(values.sum(dtype=float))
+    if total <= 0.0:
+        return parts
+    # The mean that light meets.
+    extinction = float((values.astype(float) ** 2).sum()) / total
+    while 2.0 * values.size * parts.prod() <= most:
+        thickness = extinction * field.spacing / parts
+        side = int(np.argmax(thickness))
+        if thickness[side] <= THICKEST:
+            break
+        parts[side] *= 2.0
+    return parts
+
+
+def is_same_everywhere(extinction: Floats) -> bool:
+    """Whether voxels (z, y, x) are a deck without structure."""
+    return bool((extinction == extinction[:, :1, :1]).all())
 
 
 def _deck(grid: Grid) -> Grid:

@@ -24,15 +24,17 @@ TOLERANCE = 5e-6
 of optical depth 64, where what later passes would change adds up, light is then kept to 4e-4."""
 
 MAX_PASSES = 200
-FINE_PASSES = 4
-LARGE = 250_000
-"""Voxels from which the first passes are done on voxels that are merged by two on each axis."""
+LARGE = 100_000
+"""Voxels from which most of the work is done on voxels that are merged by two on each axis."""
 
 SMALL = 30_000
 """Voxels from which these are merged again."""
 
 ROUGH = 1e-3
-"""Tolerance of what is solved on merged voxels."""
+"""Tolerance of what is solved on merged voxels for a start."""
+
+FINE = 1.5e-4
+"""Tolerance of what starts from there. Drawn cumuli then keep their light to 5e-4."""
 
 ACROSS = 0.3
 """Of a voxel, by which a ray may move farther than one before its way is divided in parts."""
@@ -178,7 +180,7 @@ def _solve_channel(
         out[...] = 0.0
         return passes.until_settled(out, MAX_PASSES, TOLERANCE)
     before = _start(voxels, scattering, entering, out)
-    up, down, number = passes.until_settled(out, FINE_PASSES, 0.0)
+    up, down, number = passes.until_settled(out, MAX_PASSES, FINE)
     return up, down, before + number
 
 
@@ -223,18 +225,19 @@ class _Passes:
         self._cloudy = voxels.extinction > 0.0
 
     def until_settled(self, state: Floats, most: int, tolerance: float) -> tuple[float, float, int]:
-        """Iterate in place; return the fluxes up and down, and how many passes it took.
-
-        Without a tolerance all passes are plain ones.
-        """
-        mixing = Mixing(state.size) if tolerance > 0.0 else None
+        """Iterate in place; return the fluxes up and down, and how many passes it took."""
+        # Light between clouds scatters nothing, and is not mixed.
+        cloudy = np.nonzero(self._cloudy)
+        mixing = Mixing(cloudy[0].size * state.shape[2])
         image = np.empty_like(state)
         up = down = 0.0
         for number in range(1, most + 1):
             up, down = self._advance(state, image)
             change = _mean_change(state, image, self._cloudy)
-            if mixing and change > tolerance and number < most:
-                mixing.step(state.reshape(-1), image.reshape(-1))
+            if change > tolerance and number < most:
+                mixed = _take(state, cloudy)
+                mixing.step(mixed, _take(image, cloudy))
+                _put(mixed, cloudy, state)
                 continue
             state[...] = image
             if change <= tolerance:
@@ -294,6 +297,19 @@ def _hemisphere(voxels: Voxels, scattering: Scattering, part: slice) -> Sweep:
         parts=np.ones_like(parts) if single else np.maximum(parts, 1),
         length=length,
     )
+
+
+def _take(moments: Floats, at: tuple[npt.NDArray[np.intp], ...]) -> Floats:
+    """Moments of some voxels, flat."""
+    levels, rows, columns = at
+    taken: Floats = moments.transpose(0, 1, 3, 2)[levels, rows, columns].reshape(-1)
+    return taken
+
+
+def _put(values: Floats, at: tuple[npt.NDArray[np.intp], ...], out: Floats) -> None:
+    """Write what `_take` returns."""
+    levels, rows, columns = at
+    out.transpose(0, 1, 3, 2)[levels, rows, columns] = values.reshape(-1, out.shape[2])
 
 
 def _mean_change(state: Floats, image: Floats, cloudy: npt.NDArray[np.bool_]) -> float:

@@ -98,7 +98,7 @@ def gather(target, source, pixels, touched):
         finer, narrower = 1.0 / target.fineness, 1.0 / across
         for j in range(pixels.shape[1]):
             red, green, blue, total = 0.0, 0.0, 0.0, 0.0
-            touched[i, j] = False
+            sees_bright = False
             for down in range(target.fineness):
                 for right in range(across):
                     row, column = i + (down + 0.5) * finer, j + (right + 0.5) * narrower
@@ -113,7 +113,7 @@ def gather(target, source, pixels, touched):
                         red += weight * part * source.pixels[texel, 0]
                         green += weight * part * source.pixels[texel, 1]
                         blue += weight * part * source.pixels[texel, 2]
-                        touched[i, j] |= is_bright
+                        sees_bright |= is_bright
                         continue
                     for corner in range(4):
                         texel, share = _tap(source, chart, row, column, corner)
@@ -123,7 +123,8 @@ def gather(target, source, pixels, touched):
                         red += weight * share * part * source.pixels[texel, 0]
                         green += weight * share * part * source.pixels[texel, 1]
                         blue += weight * share * part * source.pixels[texel, 2]
-                        touched[i, j] |= is_bright
+                        sees_bright |= is_bright
+            touched[i, j] = sees_bright
             total = max(total, _SMALLEST)
             pixels[i, j, 0] = red / total
             pixels[i, j, 1] = green / total

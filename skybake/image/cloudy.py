@@ -62,6 +62,8 @@ class CloudsOver:
         (row, column).
         """
         shape = pixels.shape[:2]
+        if not pixels.size:
+            return pixels, np.zeros(shape, np.float32)
         angle, around, extent = (
             np.broadcast_to(each, shape).ravel() for each in (zenith, azimuth, footprint)
         )

@@ -29,9 +29,10 @@ from skybake.sequence.plan import Frame, Plan
 from skybake.sequence.run import SequenceResult
 from skybake.sequence.sheet import TILE_WIDTH, check_sheet, contact_sheet
 from skybake.sequence.thumbnails import Thumbnails
+from skybake.sidecar.dome_and_sun import Common, DomeAndSun
 from skybake.sidecar.light_file import seen_from
 from skybake.sidecar.map_light import disc_diameter, holds_sun
-from skybake.sidecar.usd import Common, DomeAndSun, check_usd, usd_layer
+from skybake.sidecar.usd import check_usd, usd_layer
 from skybake.units import degrees, metres
 
 

@@ -13,9 +13,10 @@ from skybake.formats.targets import check_target, faults_of
 from skybake.formats.whole_files import WholeFiles
 from skybake.projection import PROJECTIONS
 from skybake.sidecar.blender import blender_script
+from skybake.sidecar.dome_and_sun import Common, DomeAndSun
 from skybake.sidecar.light_json import light_json
 from skybake.sidecar.map_light import MapLight
-from skybake.sidecar.usd import Common, DomeAndSun, check_usd, usd_layer
+from skybake.sidecar.usd import check_usd, usd_layer
 from skybake.units import degrees
 
 SUFFIXES = (".json", ".usda", ".py")

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from skybake.colour.space import find_colour_space
@@ -18,69 +17,13 @@ from skybake.errors import InputError
 from skybake.formats.targets import check_target
 from skybake.formats.text import is_plain_line
 from skybake.projection import PROJECTIONS
+from skybake.sidecar.dome_and_sun import Common, DomeAndSun
 from skybake.version import __version__
 
 _SUN_IS_IN_MAPS = (
     "Not active, because the maps on the dome hold the sun's disc already. To have it sampled as "
     "a light instead, bake the maps without the disc."
 )
-
-
-@dataclass(frozen=True, kw_only=True)
-class Common:
-    """What all maps of a layer have in common.
-
-    Attributes
-    ----------
-    preset : str
-        Name of the world.
-    colorspace : str
-        A name of `skybake.colour.space.COLOUR_SPACES`.
-    sun_is_in_maps : bool
-        Whether the maps hold the sun's disc, so that its light is to stay off.
-    rotation_deg : float
-        Compass bearing that the maps' -Z looks to. [deg]
-    fps : float
-        Frames per second.
-    """
-
-    preset: str
-    colorspace: str
-    sun_is_in_maps: bool
-    rotation_deg: float = 0.0
-    fps: float = 24.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class DomeAndSun:
-    """The lights of one map.
-
-    Attributes
-    ----------
-    file : str
-        The map, as seen from the layer's folder.
-    frame : int or None
-        Its time code; None of a map that does not change.
-    white_luminance_cd_m2 : float
-        Luminance that a pixel value of 1 stands for. [cd m⁻²]
-    sun_elevation_deg, sun_azimuth_deg : float
-        Geometric elevation of the sun's centre, and its compass bearing. [deg]
-    sun_angular_diameter_deg : float
-        Of its disc. [deg]
-    sun_colour : tuple of 3 float
-        Of the sun's light, linear Rec. 709 of luminance 1; any if it gives none.
-    sun_illuminance_lux : float
-        On a plane that faces the sun. [lx]
-    """
-
-    file: str
-    frame: int | None = None
-    white_luminance_cd_m2: float
-    sun_elevation_deg: float
-    sun_azimuth_deg: float
-    sun_angular_diameter_deg: float
-    sun_colour: tuple[float, float, float]
-    sun_illuminance_lux: float
 
 
 def check_usd(path: Path, projection: str, files: Iterable[str] = ()) -> None:

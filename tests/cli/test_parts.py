@@ -124,6 +124,19 @@ def test_clouds_hide_what_is_behind_the_air(folder):
     np.testing.assert_allclose(cloudy["transmittance"], expected, rtol=4 * HALF, atol=2 * HALF)
 
 
+def test_clouds_above_an_extended_horizon_add_up_too(folder, tmp_path, monkeypatch):
+    monkeypatch.chdir(folder)
+    arguments = ("--clouds", LAYER, "--clouds-quality", "draft", "--below-horizon", "extend")
+    path = tmp_path / "a.exr"
+    result = invoke("render", "--size", "16", *SUN, *arguments, "--layers", "-o", path, "--quiet")
+    assert (result.exit_code, result.stderr) == (0, "")
+    found = {name: one.astype(float) for name, one in parts(path)[0].items()}
+
+    clouds = found["clouds"]
+    together = found["sky"] * (1.0 - clouds[..., 3:]) + clouds[..., :3] + found["sun"]
+    np.testing.assert_allclose(together, found["beauty"], rtol=4 * HALF, atol=1e-3)
+
+
 def test_a_program_that_reads_one_part_gets_the_map_or_the_sky(folder):
     assert read_image(folder / "layers.exr")[0].shape == (32, 64, 3)
     source = OpenImageIO.ImageInput.open(str(folder / "cloudy-layers.exr"))

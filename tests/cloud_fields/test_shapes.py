@@ -183,7 +183,7 @@ def test_evolution_is_continuous_and_replaces_all_clouds():
     kept = np.corrcoef(values[0.0], extinction(build_field(like, 2.0 * EVOLUTION), points))
     assert abs(kept[0, 1]) < 0.2
     nearly = np.corrcoef(values[0.0], values[100.0])
-    assert nearly[0, 1] > 0.8
+    assert nearly[0, 1] > 0.6
 
 
 @pytest.mark.parametrize(
@@ -195,7 +195,7 @@ def test_clouds_that_take_the_place_of_others_have_their_cover_and_optical_depth
         depths = column_depths(build_field(like, moment), 80, levels=30)
         covered = is_covered(depths, like.optical_depth)
         assert covered.mean() == pytest.approx(like.cover, abs=0.06)
-        assert depths.mean() == pytest.approx(like.cover * like.optical_depth, rel=0.12)
+        assert depths.mean() == pytest.approx(like.cover * like.optical_depth, rel=0.05)
 
 
 @pytest.mark.parametrize("wind_from", [60.0, 270.0])

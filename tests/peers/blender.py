@@ -29,6 +29,7 @@ def render(baked, folder):
     """
     settings = [
         f"light={baked.script}",
+        f"usd={baked.usd}",
         f"albedo={scenes.ALBEDO}",
         *(f"{name}={value[0]},{value[1]}" for name, value in scenes.SQUARE_VIEWS.items()),
         f"pole_size={scenes.POLE_HEIGHT},{scenes.POLE_RADIUS}",

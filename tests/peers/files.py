@@ -21,8 +21,8 @@ class Files:
 
     Attributes
     ----------
-    map, json, script : Path
-        The map, its light as JSON, and as a script for Blender.
+    map, json, script, usd : Path
+        The map, its light as JSON, as a script for Blender, and as USD.
     sky : Sky
         The same sky with the disc in it.
     """
@@ -30,13 +30,14 @@ class Files:
     map: Path
     json: Path
     script: Path
+    usd: Path
     sky: Sky
 
 
 def bake_files(folder, target):
     """Bake what a program is given, by the name of its target."""
     values = {"sun_elevation": SUN_ELEVATION, "sun_azimuth": SUN_AZIMUTH, "pixel": "float"}
-    names = folder / "sky.light.json", folder / "sky.py"
+    names = [folder / f"sky.{kind}" for kind in ("light.json", "py", "usda")]
     settings = map_settings(size=WIDTH, target=target, **{**values, "sun_disc": "exclude"})
     baked = bake("earth", folder / "sky.exr", settings, lights=names)
     full = bake("earth", folder / "full.exr", map_settings(size=JUDGE_WIDTH, **values))

@@ -42,7 +42,7 @@ class Check(NamedTuple):
         return self.value <= self.limit
 
 
-def measure(views, sky, *, block_limit=3.0, mirror_limit=3.0):
+def measure(views, sky):
     """Return the checks of all views.
 
     Parameters
@@ -51,8 +51,6 @@ def measure(views, sky, *, block_limit=3.0, mirror_limit=3.0):
         As rendered.
     sky : Sky
         By which they are judged.
-    block_limit, mirror_limit : float, optional
-        Of the worst block of the sphere, and of the median pixel of the mirror. [%]
     """
     azimuth, elevation = shadow_angles(views.pole)
     whole, block = sphere_errors(views.sphere, sky)
@@ -62,7 +60,7 @@ def measure(views, sky, *, block_limit=3.0, mirror_limit=3.0):
     return [
         Check("level of a plane", plane_error(views.plane, sky), 1.0, "%"),
         Check("level of a sphere", whole, 1.0, "%"),
-        Check("worst block of the sphere", block, block_limit, "%"),
+        Check("worst block of the sphere", block, 3.0, "%"),
         Check(
             "bearing of a shadow",
             abs(math.remainder(azimuth - true_azimuth, 360.0)),
@@ -70,7 +68,7 @@ def measure(views, sky, *, block_limit=3.0, mirror_limit=3.0):
             "deg",
         ),
         Check("elevation by its length", abs(elevation - true_elevation), 0.5, "deg"),
-        Check("median of a mirror", mirror_error(views.mirror, sky), mirror_limit, "%"),
+        Check("median of a mirror", mirror_error(views.mirror, sky), 3.0, "%"),
     ]
 
 

@@ -6,11 +6,10 @@ from PIL import Image
 from skybake.image.picture import code_values
 from skybake.image.settings import Encoding
 
-EV, COLOURS = 14.0, 256
+EV = 14.0
 
 
 def write_picture(path, pixels):
-    """Write linear pixels as a PNG of a palette, all through the same display transform."""
+    """Write linear pixels as a PNG, all through the same display transform."""
     shown = code_values(np.ascontiguousarray(pixels, np.float32), Encoding(), EV, "aces1", None)
-    palette = Image.fromarray(shown).quantize(COLOURS, dither=Image.Dither.NONE)
-    palette.save(path, optimize=True)
+    Image.fromarray(shown).save(path, optimize=True)

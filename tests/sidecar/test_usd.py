@@ -13,7 +13,8 @@ from skybake.errors import InputError, OutputError
 from skybake.formats.reader import read_image
 from skybake.image.settings import map_settings
 from skybake.projection import equirect
-from skybake.sidecar.usd import Common, DomeAndSun, check_usd, usd_layer
+from skybake.sidecar.dome_and_sun import Common, DomeAndSun
+from skybake.sidecar.usd import check_usd, usd_layer
 from tests.sequence.records import direction
 
 SUNS = [(-3.0, 250.0), (0.0, 359.0), (5.0, 2.0), (33.0, 90.0), (89.0, 200.0), (90.0, 180.0)]

@@ -1,0 +1,62 @@
+"""What the lights of maps hold, of one map or of many by time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, kw_only=True)
+class Common:
+    """What all maps of a layer have in common.
+
+    Attributes
+    ----------
+    preset : str
+        Name of the world.
+    colorspace : str
+        A name of `skybake.colour.space.COLOUR_SPACES`.
+    sun_is_in_maps : bool
+        Whether the maps hold the sun's disc, so that its light is to stay off.
+    rotation_deg : float
+        Compass bearing that the maps' -Z looks to. [deg]
+    fps : float
+        Frames per second.
+    """
+
+    preset: str
+    colorspace: str
+    sun_is_in_maps: bool
+    rotation_deg: float = 0.0
+    fps: float = 24.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class DomeAndSun:
+    """The lights of one map.
+
+    Attributes
+    ----------
+    file : str
+        The map, as seen from the layer's folder.
+    frame : int or None
+        Its time code; None of a map that does not change.
+    white_luminance_cd_m2 : float
+        Luminance that a pixel value of 1 stands for. [cd m⁻²]
+    sun_elevation_deg, sun_azimuth_deg : float
+        Geometric elevation of the sun's centre, and its compass bearing. [deg]
+    sun_angular_diameter_deg : float
+        Of its disc. [deg]
+    sun_colour : tuple of 3 float
+        Of the sun's light, linear Rec. 709 of luminance 1; any if it gives none.
+    sun_illuminance_lux : float
+        On a plane that faces the sun. [lx]
+    """
+
+    file: str
+    frame: int | None = None
+    white_luminance_cd_m2: float
+    sun_elevation_deg: float
+    sun_azimuth_deg: float
+    sun_angular_diameter_deg: float
+    sun_colour: tuple[float, float, float]
+    sun_illuminance_lux: float
