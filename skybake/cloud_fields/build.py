@@ -13,9 +13,10 @@ from skybake.cloud_fields.cirrus import cirrus
 from skybake.cloud_fields.cumulus import cumulus
 from skybake.cloud_fields.deck import ALTOCUMULUS, STRATOCUMULUS, STRATUS, deck
 from skybake.cloud_fields.empty import empty_field
-from skybake.cloud_fields.field import CloudField
+from skybake.cloud_fields.field import SURFACE, CloudField
 from skybake.cloud_fields.generations import field_of_age
 from skybake.cloud_fields.kept import kept_field
+from skybake.cloud_fields.near_clearance import with_near_clearance
 from skybake.cloud_fields.patching import with_patches
 from skybake.cloud_fields.tiles import read_tile, tile_field
 from skybake.preset.clouds_model import CloudLayer, Tile
@@ -100,4 +101,7 @@ def _at_time(field: CloudField, layer: CloudLayer, time_s: float) -> CloudField:
     displacement[:, 8] = np.mod(displacement[:, 8] - cycles * phase, 1.0)
     if field.patch == 0.0:
         origin = np.mod(origin, field.period)
-    return field._replace(origin=origin, displacement=displacement)
+    moved = field._replace(origin=origin, displacement=displacement)
+    if field.kind != SURFACE or time_s == 0.0:
+        return moved
+    return with_near_clearance(moved)

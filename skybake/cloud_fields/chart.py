@@ -16,7 +16,7 @@ from skybake.cloud_fields.patches import (
     patches_around,
     room_within,
 )
-from skybake.cloud_fields.surface import surface_distance
+from skybake.cloud_fields.surface import surface_detail, surface_distance
 from skybake.jit.kernel import kernel
 
 _LOWEST = 0.05
@@ -107,7 +107,7 @@ def cloud_place(field, radius, x, y, z, altitude, blur):
     east, north, room = lone_patch(field, x, y)
     if room > 0.0:
         return x + east, y + north, 0.0, room
-    return shared_place(field, x, y, altitude, blur)
+    return shared_place(field, x, y, altitude, blur, surface_detail(field, blur))
 
 
 @kernel
@@ -131,7 +131,7 @@ def lone_patch(field, x, y):
 
 
 @kernel
-def shared_place(field, x, y, altitude, blur):
+def shared_place(field, x, y, altitude, blur, detail):
     """Do what `cloud_place` does, at a place of the plane where several patches may have clouds."""
     ai, aj, a, bi, bj, b, ci, cj, c = patches_around(field, x, y)
     most = max(a, b, c)
@@ -150,14 +150,14 @@ def shared_place(field, x, y, altitude, blur):
             room = min(room, room_within(field, share, most))
             continue
         dx, dy = patch_shift(field, i, j)
-        free = surface_clearance(field, x + dx, y + dy, altitude, blur)
+        free = surface_clearance(field, x + dx, y + dy, altitude, blur, detail)
         if free > 0.0:
             if nearest == math.inf and share == most:
                 east, north, erosion = dx, dy, erosion_of(field, share, other)
             room = min(room, free)
             continue
         eroded = erosion_of(field, share, other)
-        distance = surface_distance(field, x + dx, y + dy, altitude, blur) + eroded
+        distance = surface_distance(field, x + dx, y + dy, altitude, detail) + eroded
         if distance < nearest:
             room = min(room, clear) if nearest < math.inf else room
             nearest, erosion, clear = distance, eroded, free

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from skybake.cloud_fields.surface import edge_width, reach_of_noise, surface_distance
+from skybake.cloud_fields.surface import AT_BASE
 from skybake.jit.kernel import kernel
 
 
@@ -75,18 +75,22 @@ def voxel_clearance(field, x, y, altitude):
 
 
 @kernel
-def surface_clearance(field, x, y, altitude, blur):
+def surface_clearance(field, x, y, altitude, blur, detail):
     """Distance from a point to where displacement and blur may carry the surface. [km]"""
     outside = _outside(field, altitude)
     if outside > 0.0:
         return outside
-    clear = _of_block(field, x, y, altitude)
-    if clear > 0.0:
-        return clear
-    distance = surface_distance(field, x, y, altitude, blur)
-    reach = 0.5 * edge_width(field, blur) + reach_of_noise(field, blur)
-    below = field.condensation - altitude - reach
-    return max((distance - reach) / field.steepness, below)
+    _, width, coarse, middle, fine, along_x, along_y, along_z = detail
+    below = field.condensation - altitude - 0.5 * width - AT_BASE * (coarse + middle + fine)
+    if blur > field.near_blur:
+        return max(_of_block(field, x, y, altitude), below)
+    levels, rows, columns = field.near_clearance.shape
+    x, y = x * along_x, y * along_y
+    i, j = (x - math.floor(x)) * columns, (y - math.floor(y)) * rows
+    k = min((altitude - field.base) * along_z, levels - 0.5)
+    i, j = min(i, columns - 0.5), min(j, rows - 0.5)
+    clear = np.int32(field.near_clearance[np.uint32(k), np.uint32(j), np.uint32(i)])
+    return max(field.near_unit * clear, below)
 
 
 @kernel

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.cloud_fields.clearance import surface_clearance, voxel_clearance
-from skybake.cloud_fields.surface import surface_extinction
+from skybake.cloud_fields.surface import surface_detail, surface_extinction
 from skybake.cloud_fields.voxels import linear_extinction, voxel_extinction
 from skybake.jit.kernel import kernel
 
@@ -62,8 +62,11 @@ class CloudField(NamedTuple):
         Distance within which there is no cloud around any point of a block. [km]
     block : ndarray of float64, shape (3,)
         Size of a block along z, y and x. [km]
-    steepness : float
-        By how much faster than the true distance from the surface `distance` may change.
+    near_clearance : ndarray of uint8, shape (z, y, x)
+        The same around any point between nodes, where blur is at most `near_blur`; a single 0
+        for voxels. [`near_unit`]
+    near_unit, near_blur : float
+        [km]
     patch : float
         Distance between the middles of neighbouring patches of the plane, each of which holds
         the tile somewhere else; 0 where it repeats to all sides. [km]
@@ -92,7 +95,9 @@ class CloudField(NamedTuple):
     noise: npt.NDArray[np.int8]
     clearance: npt.NDArray[np.float32]
     block: npt.NDArray[np.float64]
-    steepness: float
+    near_clearance: npt.NDArray[np.uint8]
+    near_unit: float
+    near_blur: float
     patch: float
     shifts: npt.NDArray[np.float64]
     erosion: float
@@ -116,11 +121,7 @@ def extinction_at(field, x, y, altitude, blur, erosion=0.0):
     erosion : float, optional
         By which a surface is moved inward. [km]
     """
-    if field.kind == SURFACE:
-        return surface_extinction(field, x, y, altitude, blur, erosion)
-    if field.kind == CONSTANT:
-        return voxel_extinction(field, x, y, altitude)
-    return linear_extinction(field, x, y, altitude)
+    return detailed_extinction(field, x, y, altitude, detail_at(field, blur), erosion)
 
 
 @kernel
@@ -130,6 +131,30 @@ def clearance_at(field, x, y, altitude, blur):
     Distances are those of the tile, flat; parameters are those of `extinction_at`. It holds
     with any erosion.
     """
+    return detailed_clearance(field, x, y, altitude, blur, detail_at(field, blur))
+
+
+@kernel
+def detail_at(field, blur):
+    """Return what `detailed_extinction` and `detailed_clearance` need to know for a blur. [km]"""
     if field.kind == SURFACE:
-        return surface_clearance(field, x, y, altitude, blur)
+        return surface_detail(field, blur)
+    return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+
+
+@kernel
+def detailed_extinction(field, x, y, altitude, detail, erosion=0.0):
+    """Extinction at one of several points whose blur is the same, see `extinction_at`. [km⁻¹]"""
+    if field.kind == SURFACE:
+        return surface_extinction(field, x, y, altitude, detail, erosion)
+    if field.kind == CONSTANT:
+        return voxel_extinction(field, x, y, altitude)
+    return linear_extinction(field, x, y, altitude)
+
+
+@kernel
+def detailed_clearance(field, x, y, altitude, blur, detail):
+    """Clearance with the detail of a blur, see `clearance_at`. [km]"""
+    if field.kind == SURFACE:
+        return surface_clearance(field, x, y, altitude, blur, detail)
     return voxel_clearance(field, x, y, altitude)

@@ -9,7 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.cloud_fields.field import SURFACE, CloudField
-from skybake.cloud_fields.surface import STEP, surface_extinction
+from skybake.cloud_fields.near_clearance import with_near_clearance
+from skybake.cloud_fields.surface import STEP, surface_detail, surface_extinction
 from skybake.cloud_fields.surface_bounds import with_clearance
 from skybake.jit.kernel import kernel
 from skybake.jit.workers import ALL_CPUS
@@ -83,7 +84,7 @@ def fitted_field(
         shift=np.full(_BLURS, offset),
     )
     field = field._replace(shift=_mean_keeping_shifts(field))
-    return with_clearance(field)
+    return with_near_clearance(with_clearance(field))
 
 
 def _root(cover_at: Callable[[float], float], cover: float, farthest: float) -> float:
@@ -136,7 +137,9 @@ def _unfitted(surface: Surface) -> CloudField:
         noise=surface.noise,
         clearance=np.zeros((1, 1, 1), np.float32),
         block=np.ones(3),
-        steepness=1.0,
+        near_clearance=np.zeros((1, 1, 1), np.uint8),
+        near_unit=1.0,
+        near_blur=0.0,
         patch=0.0,
         shifts=np.zeros((1, 1, 2)),
         erosion=0.0,
@@ -230,6 +233,7 @@ def _measure_columns(field, blur, depths, first, last):
     count = depths.shape[0]
     levels = field.distance.shape[0] - 1
     dz = field.spacing[0]
+    detail = surface_detail(field, blur)
     for j in range(first, last):
         y = (j + 0.5) / count * field.period[1]
         for i in range(count):
@@ -237,5 +241,5 @@ def _measure_columns(field, blur, depths, first, last):
             total = 0.0
             for k in range(levels):
                 altitude = field.base + (k + 0.5) * dz
-                total += surface_extinction(field, x, y, altitude, blur)
+                total += surface_extinction(field, x, y, altitude, detail)
             depths[j, i] = total * dz

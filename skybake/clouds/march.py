@@ -9,18 +9,26 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.cloud_fields.chart import chart_stretch, lone_patch, plane_place, shared_place
-from skybake.cloud_fields.field import clearance_at, extinction_at
-from skybake.clouds.harmonics import fill_harmonics
-from skybake.clouds.light import fill_corners, fill_diffuse, sun_depth, sun_share
-from skybake.clouds.particles import DEEPEST, TERMS
+from skybake.cloud_fields.field import detail_at, detailed_clearance, detailed_extinction
+from skybake.clouds.particles import TERMS
+from skybake.clouds.source import fill_source, prepare_ray
 from skybake.jit.kernel import kernel
 from skybake.optics.medium import Array
 
 FARTHEST = 600.0
 """Length of a ray within a layer, beyond which it is not followed. [km]"""
 
-OPAQUE = 0.004
+OPAQUE = 0.01
 """Transmittance below which nothing behind is seen."""
+
+BRIGHT = 0.4
+"""Share of a ray's light that is still to come above which each step looks light up."""
+
+SHARED = 0.08
+"""Share of a ray's light whose steps, thereafter, have one look between them."""
+
+SIMILAR = 1.02
+"""Ratio of blurs that are not told apart."""
 
 LEVELS = 12
 """Steps in which a ray crosses a layer at least."""
@@ -62,7 +70,7 @@ class MarchScratch(NamedTuple):
     harmonic: Array
     toward: npt.NDArray[np.float32]
     moments: npt.NDArray[np.float32]
-    diffuse: Array
+    source: Array
     truncated: Array
     peak: Array
     local: Array
@@ -77,7 +85,7 @@ def allocate_march(channels: int, order: int) -> MarchScratch:
         harmonic=np.empty(harmonics),
         toward=np.empty(harmonics, np.float32),
         moments=np.empty(channels * harmonics, np.float32),
-        diffuse=np.empty(channels),
+        source=np.zeros(channels),
         truncated=np.empty(channels),
         peak=np.empty((channels, TERMS)),
         local=np.empty((2, 3)),
@@ -132,14 +140,16 @@ def fill_march(
         end = _exit(radius, altitude, dz, field.base, field.top, begin)
         if end <= begin:
             continue
-        place = _look(light, radius, altitude, directions[n], sun, begin, scratch)
+        place = prepare_ray(light, radius, altitude, directions[n], sun, begin, scratch)
         # Farther from the observer the plane is stretched more.
         far = end * dx, end * dy, altitude + end * dz
         stretch = chart_stretch(field, radius, far[0], far[1], far[2])
         # Up to where the tile lies as it does here.
         alone = east = north = 0.0
         passes, depth = 1.0, 0.0
-        weighted = total = 0.0
+        weighted = total = due = 0.0
+        share, is_new = 1.0, True
+        known, detail = begin * marching.pixel, detail_at(field, begin * marching.pixel)
         at = begin
         # However coarse pixels are, a ray sees the layer at several heights.
         coarsest = (field.top - field.base) / LEVELS / max(abs(scratch.local[0, 2]), 1e-6)
@@ -153,21 +163,25 @@ def fill_march(
             h = math.sqrt(px * px + py * py + above * above) - radius
             blur = middle * marching.pixel
             x, y = plane_place(field, radius, px, py, pz)
+            if blur > SIMILAR * known:
+                known, detail = blur, detail_at(field, blur)
             if middle >= alone:
                 east, north, room = lone_patch(field, x, y)
                 alone = middle + room / stretch
             if middle < alone:
                 x, y, erosion, room = x + east, y + north, 0.0, alone - middle
             else:
-                x, y, erosion, room = shared_place(field, x, y, h, blur)
+                x, y, erosion, room = shared_place(field, x, y, h, blur, detail)
                 room /= stretch
             shortest = marching.shortest + min(blur, coarsest)
-            clear = min(clearance_at(field, x, y, h, blur) / stretch, room)
+            clear = min(detailed_clearance(field, x, y, h, blur, detail) / stretch, room)
             if clear > 0.5 * shortest:
+                _add(scratch.source, due, seen[n])
+                due, is_new = 0.0, True
                 at = max(middle + clear, at + shortest)
                 step = shortest
                 continue
-            extinction = extinction_at(field, x, y, h, blur, erosion)
+            extinction = detailed_extinction(field, x, y, h, detail, erosion)
             if extinction < THINNEST:
                 at += step
                 step = shortest
@@ -176,139 +190,42 @@ def fill_march(
             if scaled * step > 1.6 * marching.depth and step > 1.01 * shortest:
                 step = max(marching.depth / scaled, shortest)
                 continue
-            toward_sun = _depth_to_sun(
-                field, light, marching, place, x, y, h, blur, erosion, scratch
-            )
-            fill_diffuse(
-                light,
-                place,
-                scratch.corner,
-                scratch.weight,
-                scratch.toward,
-                scratch.moments,
-                scratch.diffuse,
-            )
             stops = 1.0 - math.exp(-scaled * step)
             weight = passes * stops
-            to_eye = depth + 0.5 * extinction * step
-            _add_light(light, place, h, toward_sun, to_eye, weight, scratch, seen[n])
+            if is_new or passes > BRIGHT or due >= SHARED:
+                # Light between two looks is the mean of both.
+                _add(scratch.source, 0.5 * due, seen[n])
+                to_eye = depth + 0.5 * extinction * step
+                fill_source(
+                    field, light, marching, place, x, y, h, detail, erosion, to_eye, scratch
+                )
+                _add(scratch.source, 0.5 * due + weight, seen[n])
+                due, is_new = 0.0, False
+            else:
+                due += weight
             weighted += weight * middle
             total += weight
             passes *= 1.0 - stops
             depth += extinction * step
             at += step
             if passes < OPAQUE:
+                # What is not followed is as bright as what is.
+                share = 1.0 / (1.0 - passes)
                 passes = 0.0
                 break
             step = min(max(marching.depth / scaled, shortest), 2.0 * step)
             step = min(step, max(marching.longest, shortest))
+        for c in range(channels):
+            seen[n, c] = share * (seen[n, c] + due * scratch.source[c])
         through[n, 0] = passes
         through[n, 1] = math.exp(-depth) if passes > 0.0 else 0.0
         through[n, 2] = weighted / total if total > 0.0 else 0.0
 
 
 @kernel
-def _depth_to_sun(field, light, marching, place, x, y, h, blur, erosion, scratch):
-    """Optical depth toward the sun without forward peaks; leaves the point's own corners."""
-    near = 0.0
-    if marching.taps == 0:
-        fill_corners(light, x, y, h, scratch.corner, scratch.weight)
-        return sun_depth(light, place, scratch.corner, scratch.weight)
-    toward = scratch.local[1]
-    for q in range(marching.taps):
-        s = marching.reach * (q + 0.5) / marching.taps
-        east, north, up = s * toward[0], s * toward[1], s * toward[2]
-        near += extinction_at(field, x + east, y + north, h + up, blur, erosion)
-    near *= marching.reach / marching.taps * (1.0 - light.fraction)
-    s = marching.reach
-    fill_corners(
-        light,
-        x + s * toward[0],
-        y + s * toward[1],
-        h + s * toward[2],
-        scratch.corner,
-        scratch.weight,
-    )
-    near += sun_depth(light, place, scratch.corner, scratch.weight)
-    fill_corners(light, x, y, h, scratch.corner, scratch.weight)
-    return near
-
-
-@kernel
-def _add_light(light, place, h, toward_sun, to_eye, weight, scratch, out):
-    """Add what a step sends to the eye: of the sun, and of the diffuse light in `scratch`.
-
-    `to_eye` is the depth of all particles, those of peaks included, and `toward_sun` without them.
-    """
-    keep = 1.0 - light.fraction
-    to_sun = toward_sun / keep
-    sharp = math.exp(-light.fraction * (to_sun + to_eye)) / keep
-    beam = math.exp(-toward_sun)
-    series = min(to_sun, DEEPEST)
-    fz = (h - light.base) / light.spacing[0] - 0.5
-    for c in range(out.size):
-        peak = scratch.peak[c, TERMS - 1]
-        for q in range(TERMS - 2, -1, -1):
-            peak = peak * series + scratch.peak[c, q]
-        lit = _irradiance(light, place, fz, c) * beam
-        out[c] += weight * (lit * (scratch.truncated[c] + sharp * peak) + scratch.diffuse[c])
-
-
-@kernel
-def _look(light, radius, altitude, direction, sun, distance, scratch):
-    """Prepare what holds along a ray: phase functions, and harmonics where it enters the layer."""
-    px, py = distance * direction[0], distance * direction[1]
-    pz = altitude + distance * direction[2] + radius
-    r = math.sqrt(px * px + py * py + pz * pz)
-    ux, uy, uz = px / r, py / r, pz / r
-    # The tile's axes are the observer's, turned by the shortest way to the local vertical.
-    for which in range(2):
-        source = direction if which == 0 else sun
-        x, y, z = source[0], source[1], source[2]
-        along = x * ux + y * uy + z * uz
-        both = (along + z) / (1.0 + uz)
-        local = scratch.local[which]
-        local[0], local[1] = x - both * ux, y - both * uy
-        local[2] = along
-    local = scratch.local[0]
-    fill_harmonics(-local[0], -local[1], -local[2], light.order, scratch.harmonic)
-    for p in range(scratch.harmonic.size):
-        scratch.toward[p] = light.scatter[p] * scratch.harmonic[p]
-    nu = direction[0] * sun[0] + direction[1] * sun[1] + direction[2] * sun[2]
-    angles = light.truncated.shape[0]
-    middle = angles // 2
-    if nu > 0.0:
-        place = middle * math.sqrt(math.sqrt(max(1.0 - nu, 0.0)))
-    else:
-        place = 2 * middle - middle * math.sqrt(math.sqrt(max(1.0 + nu, 0.0)))
-    i = min(int(place), angles - 2)
-    u = place - i
-    for c in range(scratch.truncated.size):
-        low, high = light.truncated[i, c], light.truncated[i + 1, c]
-        scratch.truncated[c] = low + u * (high - low)
-        for q in range(TERMS):
-            low, high = light.peak[i, c, q], light.peak[i + 1, c, q]
-            scratch.peak[c, q] = low + u * (high - low)
-    return sun_share(light, scratch.local[1, 2])
-
-
-@kernel
-def _irradiance(light, place, fz, channel):
-    """Irradiance by the sun between levels and suns."""
-    levels = light.irradiance.shape[1]
-    z = min(max(fz, 0.0), levels - 1.0)
-    k = min(int(z), max(levels - 2, 0))
-    w = z - k
-    first = int(place)
-    share = place - first
-    upper = min(k + 1, levels - 1)
-    low, high = light.irradiance[first, k, channel], light.irradiance[first, upper, channel]
-    value = low + w * (high - low)
-    if share > 0.0:
-        low = light.irradiance[first + 1, k, channel]
-        high = light.irradiance[first + 1, upper, channel]
-        value += share * (low + w * (high - low) - value)
-    return value
+def _add(source, weight, out):
+    for c in range(source.size):
+        out[c] += weight * source[c]
 
 
 @kernel

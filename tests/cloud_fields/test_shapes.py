@@ -145,6 +145,16 @@ def test_clearance_is_never_overstated(kind, blur):
         assert not extinction(clouds, near[is_clear], blur).any()
 
 
+def test_clearance_is_never_overstated_once_clouds_have_changed():
+    clouds = build_field(layer("cumulus"), 0.4 * EVOLUTION)
+    points = random_points(clouds, 40_000)
+    for blur in (0.0, 0.03):
+        distance = clearance(clouds, points, blur)
+        assert not extinction(clouds, points[distance > 0.0], blur).any()
+    # The map for one moment is not that for another.
+    assert (clouds.near_clearance != field("cumulus").near_clearance).mean() > 0.01
+
+
 def test_wind_carries_clouds_by_its_drift_and_nothing_else():
     like = layer("altocumulus", wind_speed=0.01, wind_from=np.radians(225.0))
     calm = replace(like, wind_speed=0.0)
