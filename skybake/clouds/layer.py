@@ -11,18 +11,13 @@ import numpy.typing as npt
 
 from skybake.clouds.air import ClearAir, Light
 from skybake.clouds.beam import LEAST_SLOPE, fill_beam
-from skybake.clouds.diffuse import (
-    Diffuse,
-    Entering,
-    Scattering,
-    Voxels,
-    solve_diffuse,
-)
+from skybake.clouds.diffuse import Diffuse, solve_diffuse
 from skybake.clouds.harmonics import degrees
 from skybake.clouds.light import LayerLight
 from skybake.clouds.merging import merge_pairs
 from skybake.clouds.particles import Particles
 from skybake.clouds.quadrature import Quadrature, cell_samples, double_gauss
+from skybake.clouds.transfer import Entering, Scattering, Voxels
 from skybake.jit.workers import Workers
 from skybake.optics.medium import Array
 

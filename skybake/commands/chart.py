@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from skybake.commands.memory import check_memory
-from skybake.commands.options import values
+from skybake.commands.options import choices, values
 from skybake.commands.options.maps import map_needs, map_options, map_settings
 from skybake.commands.options.observer import sun_azimuth_option, sun_option
 from skybake.commands.options.rules import check_needs
@@ -30,7 +30,7 @@ from skybake.commands.printing.render_summary import target_lines
     *("-o", "--output"),
     metavar="FILE",
     type=click.Path(path_type=Path),
-    callback=values.with_suffix(*values.MAP_SUFFIXES),
+    callback=values.with_suffix(*choices.MAP_SUFFIXES),
     show_default="chart, the target and the projection",
     help="Chart to write, in the formats of a map; {face} in it is replaced for six files.",
 )

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from skybake.commands.memory import check_memory
-from skybake.commands.options import values
+from skybake.commands.options import choices, values
 from skybake.commands.options.conversion import conversion_options
 from skybake.commands.options.rules import check_needs
 from skybake.commands.printing.notices import warn
@@ -38,7 +38,7 @@ _INPUT_SHAPES = {"input_cube_space": "space", "input_fov": "fov"}
     "output",
     metavar="OUT",
     type=click.Path(path_type=Path),
-    callback=values.with_suffix(".exr", ".hdr", *values.CUBE_SUFFIXES),
+    callback=values.with_suffix(".exr", ".hdr", *choices.CUBE_SUFFIXES),
 )
 @conversion_options
 @click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object.")
@@ -102,12 +102,12 @@ def _needs(options: Mapping[str, Any], output: Path) -> dict[str, tuple[bool, st
             options["input_projection"] in having,
             f"needs --input-projection {' or '.join(having)}",
         )
-        for name, having in values.PROJECTIONS_WITH.items()
+        for name, having in choices.PROJECTIONS_WITH.items()
     }
     return {
         **needed,
         "rotate": (
-            options["projection"] not in values.PROJECTIONS_WITH["look"],
+            options["projection"] not in choices.PROJECTIONS_WITH["look"],
             f"cannot be combined with --projection {options['projection']}, which has --look",
         ),
         "omit_exposure": (is_radiance, "needs an .hdr output"),
@@ -142,9 +142,9 @@ def _projection(options: Mapping[str, Any], environment: Environment) -> Project
         given["azimuth"], given["elevation"] = options["look"]
     old = environment.projection
     name = options["projection"] or old.name
-    if name in values.PROJECTIONS_WITH["look"] and options["rotate"] is not None:
+    if name in choices.PROJECTIONS_WITH["look"] and options["rotate"] is not None:
         raise click.UsageError(f"--rotate: cannot be combined with a {name} map, which has --look")
-    for option, having in values.PROJECTIONS_WITH.items():
+    for option, having in choices.PROJECTIONS_WITH.items():
         if options[option] is not None and name not in having:
             raise click.UsageError(
                 f"--{option.replace('_', '-')}: needs --projection {' or '.join(having)}"

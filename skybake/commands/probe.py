@@ -11,7 +11,7 @@ import click
 
 from skybake import input_files
 from skybake.commands.memory import check_memory
-from skybake.commands.options import values
+from skybake.commands.options import choices, values
 from skybake.commands.options.clouds import (
     check_clouds,
     clouds_from_options,
@@ -74,7 +74,7 @@ def _wavelengths(text: str) -> tuple[float, ...]:
 @click.option("--illuminance", is_flag=True, help="Add illuminances by sun and sky, in lx.")
 @click.option(
     "--method",
-    type=click.Choice((*values.METHODS, "reference")),
+    type=click.Choice((*choices.METHODS, "reference")),
     default="full",
     show_default=True,
     help="Light transport, as for render, or an unbiased path tracer with standard errors.",

@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from skybake.commands.memory import check_memory
-from skybake.commands.options import values
+from skybake.commands.options import choices, values
 from skybake.commands.options.clouds import check_clouds, clouds_options
 from skybake.commands.options.maps import map_needs, map_options, map_settings
 from skybake.commands.options.observer import (
@@ -47,7 +47,7 @@ from skybake.commands.printing.progress import map_progress
     *("-o", "--output"),
     metavar="FILE",
     type=click.Path(path_type=Path),
-    callback=values.with_suffix(*values.MAP_SUFFIXES),
+    callback=values.with_suffix(*choices.MAP_SUFFIXES),
     show_default="a name that says what it is, in the current folder",
     help="Map to write, .exr or .hdr, or for all faces of a cubemap .ktx2 or .dds; {face} in it is "
     "replaced for six files.",

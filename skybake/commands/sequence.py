@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from skybake.commands.memory import check_memory
-from skybake.commands.options import values
+from skybake.commands.options import choices, values
 from skybake.commands.options.clouds import check_clouds, clouds_options
 from skybake.commands.options.emit import (
     RememberingCommand,
@@ -82,7 +82,7 @@ SOME_FAILED = 3
     *("-o", "--output"),
     metavar="PATTERN",
     type=click.Path(path_type=Path),
-    callback=values.with_suffix(*values.MAP_SUFFIXES),
+    callback=values.with_suffix(*choices.MAP_SUFFIXES),
     show_default="NAME.####.exr",
     help="Maps to write. #### is the frame number in four digits, as is a single #; %04d, "
     "{frame:04d}, $F4 and @@@@ mean the same.",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from skybake.commands.options import values
+from skybake.commands.options import choices
 
 if TYPE_CHECKING:
     from skybake.image.target import Target
@@ -17,7 +17,7 @@ _WIDTH = 100
 
 
 @click.command()
-@click.argument("name", required=False, type=click.Choice(values.TARGETS), metavar="[NAME]")
+@click.argument("name", required=False, type=click.Choice(choices.TARGETS), metavar="[NAME]")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def targets(name: str | None, as_json: bool) -> None:
     """List the programs that maps can be made for, or what one of them needs and why.

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from functools import cache, cached_property
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from skybake.colour.space import luminance_weights, rgb_from_xyz
 from skybake.errors import InputError, UnsolvableError
+from skybake.image.horizontal import horizontal_irradiance
 from skybake.image.luminous import luminous_weights
 from skybake.image.settings import MapSettings
 from skybake.image.stages import Stages
@@ -44,9 +45,6 @@ fifth of that of the sky in a dark night."""
 UNDERSHOOT = 0.01
 """Of the brightest luminance: the most that cubics may be below 0; it is 0 then."""
 
-PROBE_ZENITHS = 192
-PROBE_AZIMUTHS = 256
-CLOUDY_PROBE_AZIMUTHS = 128
 CELLS_AT_ONCE = 32768
 
 _LAYERS = {
@@ -55,19 +53,6 @@ _LAYERS = {
     "only": ("sun",),
     "separate": ("sky", "sun"),
 }
-
-
-@cache
-def _probe_zeniths() -> tuple[Array, Array]:
-    """Zenith angles of the upper hemisphere and their weights, which take longer than a frame."""
-    node, weight = np.polynomial.legendre.leggauss(PROBE_ZENITHS)
-    return math.pi / 4.0 * (node + 1.0), math.pi / 4.0 * weight
-
-
-def _horizontal_weights() -> Array:
-    """Weights of these zenith angles in the illuminance of a horizontal plane."""
-    zenith, weight = _probe_zeniths()
-    return weight * np.sin(zenith) * np.cos(zenith)
 
 
 class Scene:
@@ -294,29 +279,20 @@ class Scene:
 
     def sky_illuminance(self) -> float:
         """Illuminance of a horizontal plane by the sky without the sun's disc. [lx]"""
-        luminance = self._sky_by_zenith @ self.luminance
-        return float(2.0 * math.pi * (_horizontal_weights() * luminance).sum())
+        return float(self._sky_on_horizontal @ self.luminance)
 
     def sky_xyz(self) -> Array:
         """XYZ by the sky without the sun's disc, on the horizontal, shape (3,). [lx]"""
         encoding = self.settings.encoding
-        flux = 2.0 * math.pi * _horizontal_weights() @ self._sky_by_zenith
         xyz_from_rgb = np.linalg.inv(rgb_from_xyz(encoding.space))
-        xyz: Array = encoding.white_luminance * (xyz_from_rgb @ flux)
+        xyz: Array = encoding.white_luminance * (xyz_from_rgb @ self._sky_on_horizontal)
         return xyz
 
     @cached_property
-    def _sky_by_zenith(self) -> Array:
-        """Mean pixel values around the sky at the zenith angles of a probe, (zenith, 3)."""
-        zenith, _ = _probe_zeniths()
+    def _sky_on_horizontal(self) -> Array:
+        """Irradiance of the horizontal by the sky, in pixel values, shape (3,). [sr]"""
         # Without clouds both sides of the sun are alike.
-        count, around = PROBE_AZIMUTHS, math.pi
-        if self.cloudscape is not None:
-            count, around = CLOUDY_PROBE_AZIMUTHS, 2.0 * math.pi
-        azimuth = around * (np.arange(count) + 0.5) / count
-        pixels = self.evaluate(zenith[:, None], azimuth[None], 1e-9)
-        mean: Array = pixels.astype(float).mean(axis=1)
-        return mean
+        return horizontal_irradiance(self.evaluate, is_even=self.cloudscape is None)
 
     def evaluate(self, zenith: Array, azimuth: Array, footprint: Array | float) -> np.ndarray:
         """Pixel values of the sky, see `fill_directions`, shape (row, column, 3).

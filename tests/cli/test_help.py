@@ -11,7 +11,7 @@ import skybake
 from skybake.cli import main
 from skybake.colour.exposure import UNITS
 from skybake.colour.space import COLOUR_SPACES
-from skybake.commands.options import values
+from skybake.commands.options import choices
 from skybake.commands.render import render
 from skybake.formats.preview import VIEWS
 from skybake.image import settings
@@ -88,7 +88,7 @@ def test_a_command_loads_no_other(tmp_path):
 
 
 def test_choices_are_those_of_the_engine():
-    assert tuple(PROJECTIONS) == values.PROJECTIONS
+    assert tuple(PROJECTIONS) == choices.PROJECTIONS
     fields = {
         "equirect_rows": "rows",
         "cube_layout": "layout",
@@ -97,19 +97,19 @@ def test_choices_are_those_of_the_engine():
         "fov": "fov",
         "look": "azimuth",
     }
-    for option, having in values.PROJECTIONS_WITH.items():
+    for option, having in choices.PROJECTIONS_WITH.items():
         names = (kind.name for kind in PROJECTIONS.values() if hasattr(kind, fields[option]))
         assert tuple(names) == having
-    assert values.CUBE_LAYOUTS == LAYOUTS
-    assert tuple(SPACES) == values.CUBE_SPACES
-    assert tuple(TARGETS) == values.TARGETS
-    assert values.EQUIRECT_ROWS == ROWS
-    assert tuple(COLOUR_SPACES) == values.COLOUR_SPACES
-    assert values.UNITS == UNITS
-    assert values.PIXELS == settings.PIXELS
-    assert values.SUN_DISCS == settings.SUN_DISCS
-    assert values.METHODS == METHODS
-    assert values.VIEWS == VIEWS
+    assert choices.CUBE_LAYOUTS == LAYOUTS
+    assert tuple(SPACES) == choices.CUBE_SPACES
+    assert tuple(TARGETS) == choices.TARGETS
+    assert choices.EQUIRECT_ROWS == ROWS
+    assert tuple(COLOUR_SPACES) == choices.COLOUR_SPACES
+    assert choices.UNITS == UNITS
+    assert choices.PIXELS == settings.PIXELS
+    assert choices.SUN_DISCS == settings.SUN_DISCS
+    assert choices.METHODS == METHODS
+    assert choices.VIEWS == VIEWS
 
 
 def test_defaults_are_those_of_the_engine():

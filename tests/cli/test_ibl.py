@@ -7,7 +7,7 @@ import OpenImageIO
 import pytest
 
 from skybake.commands.ibl import ibl
-from skybake.commands.options import values
+from skybake.commands.options import choices
 from skybake.ibl import program, settings
 from skybake.projection.cubemap import FACES
 from tests.baking.maps import pixels
@@ -225,10 +225,10 @@ def test_a_picture_of_integers_is_taken_with_a_warning(tmp_path, sunny):
 
 
 def test_choices_and_defaults_are_those_of_the_engine():
-    assert values.LIGHTING_PARTS == settings.PARTS
-    assert values.LIGHTING_FORMATS == settings.FORMATS
-    assert values.LIGHTING_TARGETS == program.PROGRAMS
-    assert values.MIP_ROUGHNESS == settings.MAPPINGS
+    assert choices.LIGHTING_PARTS == settings.PARTS
+    assert choices.LIGHTING_FORMATS == settings.FORMATS
+    assert choices.LIGHTING_TARGETS == program.PROGRAMS
+    assert choices.MIP_ROUGHNESS == settings.MAPPINGS
     shown = {option.name: option.show_default for option in ibl.params}
     made = settings.LightingMaps()
     for name in ("specular_size", "diffuse_size", "mips", "samples", "dfg_size"):

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from skybake.clouds.beam import fill_beam
-from skybake.clouds.diffuse import LARGE, Entering, Scattering, Voxels, solve_diffuse
+from skybake.clouds.diffuse import LARGE, solve_diffuse
 from skybake.clouds.harmonics import degrees, harmonics_of
 from skybake.clouds.particles import divide_phase
 from skybake.clouds.quadrature import double_gauss
+from skybake.clouds.transfer import Entering, Scattering, Voxels
 from skybake.jit.workers import Workers
 from tests.reference.cloud_scenes import DROPLETS
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from skybake.commands.options import values
+from skybake.commands.options import choices, values
 from skybake.commands.options.rules import Decorator, is_given, option_names, options_together
 from skybake.errors import InputError, PresetError
 from skybake.units import (
@@ -175,7 +175,7 @@ def clouds_options(*, quality: str = "normal", is_range: bool = False) -> Decora
         ),
         click.option(
             "--clouds-quality",
-            type=click.Choice(values.CLOUD_QUALITIES),
+            type=click.Choice(choices.CLOUD_QUALITIES),
             default=quality,
             show_default=True,
             help="How finely the light of clouds is solved for.",

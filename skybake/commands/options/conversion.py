@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from skybake.commands.options import values
+from skybake.commands.options import choices, values
 from skybake.commands.options.rules import options_together
 
 _SAME = "that of IN"
@@ -12,7 +12,7 @@ _SAME = "that of IN"
 conversion_options = options_together(
     click.option(
         "--projection",
-        type=click.Choice(values.PROJECTIONS),
+        type=click.Choice(choices.PROJECTIONS),
         show_default=_SAME,
         help="Kind of map, as of 'skybake render'.",
     ),
@@ -39,14 +39,14 @@ conversion_options = options_together(
     ),
     click.option(
         "--cube-layout",
-        type=click.Choice(values.CUBE_LAYOUTS),
+        type=click.Choice(choices.CUBE_LAYOUTS),
         show_default="faces, or that of IN",
         help="Six files px nx py ny pz nz, one horizontal or vertical cross, row or column, or one "
         "OpenEXR cube.",
     ),
     click.option(
         "--cube-space",
-        type=click.Choice(values.CUBE_SPACES),
+        type=click.Choice(choices.CUBE_SPACES),
         show_default="world, or that of IN",
         help="Axes of a cubemap: the map's own, or with x or z negated.",
     ),
@@ -58,7 +58,7 @@ conversion_options = options_together(
     ),
     click.option(
         "--equirect-rows",
-        type=click.Choice(values.EQUIRECT_ROWS),
+        type=click.Choice(choices.EQUIRECT_ROWS),
         show_default="centres, or those of IN",
         help="Where the first and the last row look: half a row beside the zenith and the nadir, "
         "or at them.",
@@ -72,13 +72,13 @@ conversion_options = options_together(
     ),
     click.option(
         "--colorspace",
-        type=click.Choice(values.COLOUR_SPACES),
+        type=click.Choice(choices.COLOUR_SPACES),
         show_default=_SAME,
         help="Linear, scene-referred space of the pixels.",
     ),
     click.option(
         "--units",
-        type=click.Choice(values.UNITS),
+        type=click.Choice(choices.UNITS),
         show_default=_SAME,
         help="What a pixel value of 1 stands for: 1.2 * 2^15 cd/m2, or 1 cd/m2.",
     ),
@@ -90,7 +90,7 @@ conversion_options = options_together(
     ),
     click.option(
         "--pixel",
-        type=click.Choice(values.PIXELS),
+        type=click.Choice(choices.PIXELS),
         show_default="auto",
         help="Stored type; auto takes half where it holds every value. rgb9e5 and r11g11b10 are of "
         "a .ktx2.",
@@ -116,13 +116,13 @@ conversion_options = options_together(
     ),
     click.option(
         "--input-projection",
-        type=click.Choice(values.PROJECTIONS),
+        type=click.Choice(choices.PROJECTIONS),
         show_default="what metadata or the shape of IN say",
         help="Kind of map that IN is.",
     ),
     click.option(
         "--input-cube-space",
-        type=click.Choice(values.CUBE_SPACES),
+        type=click.Choice(choices.CUBE_SPACES),
         show_default="world",
         help="Axes of IN, a cubemap.",
     ),
@@ -149,13 +149,13 @@ conversion_options = options_together(
     ),
     click.option(
         "--input-colorspace",
-        type=click.Choice(values.COLOUR_SPACES),
+        type=click.Choice(choices.COLOUR_SPACES),
         show_default="what tags say, or lin_rec709",
         help="Space of the pixels of IN.",
     ),
     click.option(
         "--input-units",
-        type=click.Choice(values.UNITS),
+        type=click.Choice(choices.UNITS),
         show_default="what tags say",
         help="What a pixel value of 1 stands for in IN.",
     ),

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from skybake.commands.options import values
+from skybake.commands.options import choices
 from skybake.commands.options.maps import map_options
 from skybake.commands.options.rules import Needs, options_together
 
@@ -32,9 +32,9 @@ def _same(option: click.Parameter) -> Any:
 
 def _parts(text: str) -> tuple[str, ...]:
     parts = tuple(dict.fromkeys(part.strip() for part in text.split(",")))
-    if not set(parts) <= set(values.LIGHTING_PARTS):
+    if not set(parts) <= set(choices.LIGHTING_PARTS):
         raise click.BadParameter(
-            f"must be some of {','.join(values.LIGHTING_PARTS)} with commas between, got {text!r}"
+            f"must be some of {','.join(choices.LIGHTING_PARTS)} with commas between, got {text!r}"
         )
     return parts
 
@@ -43,7 +43,7 @@ lighting_options = options_together(
     click.option(
         "--target",
         metavar="NAME",
-        type=click.Choice(values.LIGHTING_TARGETS),
+        type=click.Choice(choices.LIGHTING_TARGETS),
         help="Program that the maps are for: sets format, pixel type, axes, scale, roughness of "
         "mips, and whether the sun is in the maps, where other options do not.",
     ),
@@ -71,7 +71,7 @@ lighting_options = options_together(
     ),
     click.option(
         "--mip-roughness",
-        type=click.Choice(values.MIP_ROUGHNESS),
+        type=click.Choice(choices.MIP_ROUGHNESS),
         show_default="linear",
         help="Perceptual roughness r of the levels: r = level / (N - 1), or, as in Filament, "
         "r (2 - r) = level / (N - 1). GGX's alpha is its square.",
@@ -104,7 +104,7 @@ lighting_options = options_together(
     ),
     click.option(
         "--sun-disc",
-        type=click.Choice(values.LIGHTING_SUN_DISCS),
+        type=click.Choice(choices.LIGHTING_SUN_DISCS),
         show_default="include",
         help="Whether the sun is in the maps, or left to a light of the program.",
     ),
@@ -112,20 +112,20 @@ lighting_options = options_together(
     click.option(
         "--format",
         "file_format",
-        type=click.Choice(values.LIGHTING_FORMATS),
+        type=click.Choice(choices.LIGHTING_FORMATS),
         show_default="ktx2",
         help="Of the cubes; exr are six files a level.",
     ),
     click.option(
         "--pixel",
-        type=click.Choice(values.PIXELS),
+        type=click.Choice(choices.PIXELS),
         show_default="auto",
         help="Stored type of the cubes; auto takes half where it holds every value. rgb9e5 and "
         "r11g11b10 are of ktx2.",
     ),
     click.option(
         "--cube-space",
-        type=click.Choice(values.CUBE_SPACES),
+        type=click.Choice(choices.CUBE_SPACES),
         show_default="world",
         help="Axes of the cubes: the map's own, or with x or z negated.",
     ),
@@ -140,7 +140,7 @@ lighting_options = options_together(
 
 def lighting_needs(options: Mapping[str, Any], program: Program) -> Needs:
     """Return what `lighting_options` need to have an effect."""
-    parts = options["parts"] or values.LIGHTING_PARTS
+    parts = options["parts"] or choices.LIGHTING_PARTS
     file_format = options["file_format"] or program.format
     sun = options["sun_disc"] or program.sun_disc
     of_part = {

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from skybake.commands.options import values
+from skybake.commands.options import choices, values
 from skybake.commands.options.rules import Needs, options_together
 from skybake.errors import InputError
 
@@ -34,13 +34,13 @@ map_options = options_together(
     click.option(
         "--target",
         metavar="NAME",
-        type=click.Choice(values.TARGETS),
+        type=click.Choice(choices.TARGETS),
         help="Program that the map is for, see skybake targets: sets projection, turn, format, "
         "scale and whether the sun is in the map, where other options do not.",
     ),
     click.option(
         "--projection",
-        type=click.Choice(values.PROJECTIONS),
+        type=click.Choice(choices.PROJECTIONS),
         show_default="equirect",
         help="Kind of map; fisheye is equidistant, perspective a camera's picture, angular a light "
         "probe.",
@@ -69,14 +69,14 @@ map_options = options_together(
     ),
     click.option(
         "--cube-layout",
-        type=click.Choice(values.CUBE_LAYOUTS),
+        type=click.Choice(choices.CUBE_LAYOUTS),
         show_default="faces",
         help="Six files px nx py ny pz nz, one horizontal or vertical cross, row or column, or one "
         "OpenEXR cube.",
     ),
     click.option(
         "--cube-space",
-        type=click.Choice(values.CUBE_SPACES),
+        type=click.Choice(choices.CUBE_SPACES),
         show_default="world",
         help="Axes of a cubemap: the map's own, or with x or z negated, for programs that negate "
         "it before they sample a cube, and for left-handed ones.",
@@ -91,7 +91,7 @@ map_options = options_together(
     ),
     click.option(
         "--equirect-rows",
-        type=click.Choice(values.EQUIRECT_ROWS),
+        type=click.Choice(choices.EQUIRECT_ROWS),
         show_default="centres",
         help="Where the first and the last row look: half a row beside the zenith and the nadir, "
         "or at them, as Mitsuba and OpenEXR's programs read a map.",
@@ -106,14 +106,14 @@ map_options = options_together(
     ),
     click.option(
         "--colorspace",
-        type=click.Choice(values.COLOUR_SPACES),
+        type=click.Choice(choices.COLOUR_SPACES),
         default="lin_rec709",
         show_default=True,
         help="Linear, scene-referred space of the pixels.",
     ),
     click.option(
         "--units",
-        type=click.Choice(values.UNITS),
+        type=click.Choice(choices.UNITS),
         show_default="ev15",
         help="What a pixel value of 1 stands for: 1.2 * 2^15 cd/m2, or 1 cd/m2.",
     ),
@@ -125,7 +125,7 @@ map_options = options_together(
     ),
     click.option(
         "--pixel",
-        type=click.Choice(values.PIXELS),
+        type=click.Choice(choices.PIXELS),
         show_default="auto",
         help="Stored type; auto takes half where it holds every value. rgb9e5 and r11g11b10 are of "
         "a .ktx2.",
@@ -156,7 +156,7 @@ map_options = options_together(
     ),
     click.option(
         "--sun-disc",
-        type=click.Choice(values.SUN_DISCS),
+        type=click.Choice(choices.SUN_DISCS),
         show_default="include",
         help="Whether the map holds the sun's disc, or nothing else, or as separate parts of an "
         ".exr.",
@@ -182,7 +182,7 @@ map_options = options_together(
     ),
     click.option(
         "--below-horizon",
-        type=click.Choice(values.BELOW_HORIZON),
+        type=click.Choice(choices.BELOW_HORIZON),
         default="ground",
         show_default=True,
         help="What is below the true horizon: the ground, the horizon's light softly extended "
@@ -190,7 +190,7 @@ map_options = options_together(
     ),
     click.option(
         "--method",
-        type=click.Choice(values.METHODS),
+        type=click.Choice(choices.METHODS),
         default="full",
         show_default=True,
         help="Light transport: all orders of scattering, Hillaire's closure, or, as a check, "
@@ -213,10 +213,10 @@ def map_needs(options: Mapping[str, Any]) -> Needs:
     return {
         **{
             name: (projection in having, f"needs --projection {' or '.join(having)}")
-            for name, having in values.PROJECTIONS_WITH.items()
+            for name, having in choices.PROJECTIONS_WITH.items()
         },
         "rotate": (
-            projection not in values.PROJECTIONS_WITH["look"],
+            projection not in choices.PROJECTIONS_WITH["look"],
             f"cannot be combined with --projection {projection}, which has --look",
         ),
         **dict.fromkeys(
@@ -246,7 +246,7 @@ def _check_suffix(suffix: str, options: Mapping[str, Any]) -> None:
     layout = options["cube_layout"]
     if layout == "exr" and suffix != ".exr":
         raise click.UsageError("--cube-layout exr: needs an .exr output")
-    if suffix in values.CUBE_SUFFIXES:
+    if suffix in choices.CUBE_SUFFIXES:
         if _projection(options) != "cubemap":
             raise click.UsageError(f"--output: {suffix} needs --projection cubemap")
         if layout not in {None, "faces"}:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from skybake.commands.options import values
+from skybake.commands.options import choices, values
 from skybake.commands.options.rules import Decorator, Needs, options_together
 
 if TYPE_CHECKING:
@@ -49,8 +49,8 @@ look_options = options_together(
     ),
     click.option(
         "--view",
-        type=click.Choice(values.VIEWS),
-        show_default=values.VIEWS[0],
+        type=click.Choice(choices.VIEWS),
+        show_default=choices.VIEWS[0],
         help="Its display transform: that of ACES 1.3, or ACES 2.0.",
     ),
 )
@@ -98,7 +98,7 @@ def picture_from_options(options: Mapping[str, Any], ev: float | str | None) -> 
     view = options["shot"]
     return PictureSettings(
         ev=ev,  # type: ignore[arg-type]
-        view=options["view"] or values.VIEWS[0],
+        view=options["view"] or choices.VIEWS[0],
         white_balance=options["white_balance"],
         shot=None if view is None else shot(*view),
     )

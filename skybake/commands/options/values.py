@@ -1,8 +1,4 @@
-"""Values of options: how they are read, and what they may be.
-
-The choices repeat those of the engine, because help and completion must not wait
-for the engine's imports; a test compares both lists.
-"""
+"""Values of options: how they are read."""
 
 from __future__ import annotations
 
@@ -21,37 +17,6 @@ from skybake.sequence.frames import parse_frames
 from skybake.sequence.ramp import Ramp
 from skybake.units import parse_angle, parse_duration, parse_length
 
-PROJECTIONS = ("equirect", "cubemap", "fisheye", "perspective", "angular", "octahedral")
-PROJECTIONS_WITH = {
-    "equirect_rows": ("equirect",),
-    "cube_layout": ("cubemap",),
-    "cube_space": ("cubemap",),
-    "face_names": ("cubemap",),
-    "fov": ("fisheye", "perspective"),
-    "look": ("fisheye", "perspective"),
-}
-TARGETS = (
-    *("blender", "usd", "mitsuba", "houdini", "openexr"),
-    *("unreal", "unity", "godot", "bevy", "three", "filament"),
-)
-EQUIRECT_ROWS = ("centres", "poles")
-CUBE_LAYOUTS = ("faces", "cross", "vertical-cross", "row", "column", "exr")
-CUBE_SPACES = ("world", "flip-x", "flip-z")
-COLOUR_SPACES = ("lin_rec709", "acescg", "lin_rec2020", "lin_p3d65", "aces2065-1", "xyz")
-UNITS = ("ev15", "nits")
-PIXELS = ("auto", "half", "float", "rgb9e5", "r11g11b10")
-CUBE_SUFFIXES = (".ktx2", ".dds")
-MAP_SUFFIXES = (".exr", ".hdr", *CUBE_SUFFIXES)
-BELOW_HORIZON = ("ground", "extend", "black")
-SUN_DISCS = ("include", "exclude", "only", "separate")
-LIGHTING_PARTS = ("specular", "diffuse", "sh", "dfg")
-LIGHTING_FORMATS = ("ktx2", "dds", "exr")
-LIGHTING_TARGETS = ("bevy", "three", "filament")
-LIGHTING_SUN_DISCS = ("include", "exclude")
-MIP_ROUGHNESS = ("linear", "filament")
-METHODS = ("full", "hillaire", "march")
-CLOUD_QUALITIES = ("draft", "normal", "high")
-VIEWS = ("aces1", "aces2")
 COLDEST, HOTTEST = 1000.0, 25_000.0
 DAYS_FROM_TODAY = {"yesterday": -1, "today": 0, "tomorrow": 1}
 
