@@ -169,9 +169,9 @@ def test_progress_rises_to_one(tmp_path):
 )
 def test_bands_do_not_show(tmp_path, monkeypatch, suffix, options):
     """A map written in one band is the map written in many."""
-    from skybake.baking import write
+    from skybake.baking import pictures
 
     whole, _ = bake_map(tmp_path / f"whole{suffix}", size=96, **options)
-    monkeypatch.setattr(write, "BAND_ROWS", 7)
+    monkeypatch.setattr(pictures, "BAND_ROWS", 7)
     bands, _ = bake_map(tmp_path / f"bands{suffix}", size=96, **options)
     np.testing.assert_array_equal(pixels(whole.files[0]), pixels(bands.files[0]))
