@@ -89,7 +89,8 @@ def light_from_attributes(attributes: Mapping[str, Any]) -> Light:
 def _numbers(value: Any) -> list[float]:
     """Numbers of an attribute, which a Radiance picture holds as text."""
     values = value.split() if isinstance(value, str) else np.atleast_1d(value)
-    return [float(str(np.float32(number))) for number in values]
+    # What str prints of a number, a program can change.
+    return [float(np.format_float_scientific(np.float32(number))) for number in values]
 
 
 def _colour(xyz: np.ndarray) -> Triple:

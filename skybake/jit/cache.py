@@ -32,7 +32,7 @@ CLOUDS_PREFIX = "clouds-"
 
 KERNEL_SOURCES = (
     "jit", "optics", "transport", "cloud_fields", "scattering", "reference", "sky", "clouds",
-    "formats/half.py",
+    "environment", "ibl", "formats/half.py",
 )  # fmt: skip
 """Packages and modules that hold kernels, or what kernels are made from."""
 

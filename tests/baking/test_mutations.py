@@ -32,7 +32,7 @@ def bakes_finite_map_or_refuses(folder, preset, method):
         assert not (folder / "a.exr").exists()
 
 
-@settings(max_examples=60)
+@settings(max_examples=5)
 @given(mutants())
 def test_a_mutated_preset_is_refused_in_a_line_or_becomes_a_finite_map(tmp_path_factory, preset):
     bakes_finite_map_or_refuses(tmp_path_factory.mktemp("mutant"), preset, "hillaire")

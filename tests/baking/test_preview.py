@@ -39,6 +39,7 @@ WAYS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("preset", "elevation", "altitude"), SCENES)
 def test_one_scene_has_one_exposure_in_all_projections(tmp_path, preset, elevation, altitude):
     found = {}
@@ -99,6 +100,7 @@ def test_the_lit_planet_from_orbit_is_neither_white_nor_black(tmp_path, elevatio
     assert (emitted > 0.95).mean() < 0.01
 
 
+@pytest.mark.slow
 def test_the_exposure_follows_the_sun_smoothly():
     """From -12 to 12 deg in steps of half a degree: no step among changes of up to a stop."""
     pipeline = Pipeline()

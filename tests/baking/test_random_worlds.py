@@ -67,6 +67,7 @@ def check_light(folder, seed):
         assert illuminance >= 0.0
 
 
+@pytest.mark.slow
 def test_few_random_worlds_are_refused_and_at_once_for_their_optical_depth(tmp_path):
     refusals = [refusal_at_once(load_world(tmp_path, seed)) for seed in range(200)]
     told = [refusal for refusal in refusals if refusal is not None]

@@ -55,6 +55,7 @@ def test_the_ground_has_no_twilight(arguments):
     assert pixels.max() > 0.0 or "400km" not in arguments
 
 
+@pytest.mark.slow
 def test_a_probe_sees_ground_below_and_nothing_above():
     Path("in.csv").write_text("view_zenith_deg,relative_azimuth_deg\n30,0\n180,0\n", "utf-8")
     for method in ("full", "reference"):

@@ -29,6 +29,7 @@ def test_a_clear_sky_imports_no_room_of_clouds(folder, world):
     assert (status, output, errors) == (0, "[]\n", "")
 
 
+@pytest.mark.slow
 def test_a_terminal_is_told_while_clouds_are_lit(folder):
     few_voxels(folder)
     arguments = ("render", *SMALL, "--clouds", LAYER, "--json", "-o", "a.exr")
@@ -38,6 +39,7 @@ def test_a_terminal_is_told_while_clouds_are_lit(folder):
     assert b"100%" in seen
 
 
+@pytest.mark.slow
 def test_clouds_of_a_frame_depend_on_its_time_alone(folder):
     few_voxels(folder)
     moving = ("--clouds", LAYER, "--cloud-time", "0s..20s", "--frames", "1-3", "--sun", "30deg")
@@ -50,6 +52,7 @@ def test_clouds_of_a_frame_depend_on_its_time_alone(folder):
     assert digests("a.*.exr") == before
 
 
+@pytest.mark.slow
 def test_a_frame_shows_the_clouds_of_a_map_at_its_time(folder):
     few_voxels(folder)
     clouds = ("--clouds", LAYER, "--method", "hillaire")

@@ -13,7 +13,18 @@ from tests.cli.runs import invoke, run
 
 # Long runs are no fault, so what decides on the cost of a run is never mutated.
 COSTLY = {"samples": ["1", "0", "x"], "frames": ["1-3", "5", "3-1", "1-9:2", "1,,2", ""]}
-PATHS = ["a.exr", "a.hdr", "a.png", "no/such/a.exr", ".", "a b.exr", "ü.exr", f"{'x' * 300}.exr"]
+PATHS = [
+    "a.exr",
+    "a.hdr",
+    "a.ktx2",
+    "a.usda",
+    "a.png",
+    "no/such/a.exr",
+    ".",
+    "a b.exr",
+    "ü.exr",
+    f"{'x' * 300}.exr",
+]
 EXAMPLES = {
     "preset": ["earth", "mars", "earth-hillaire2020", "own.toml", "nowhere", "a/b.toml"],
     "changes": ["ozone.column_du=250", "ground.albedo=snow", "aerosol=none", "a.b=[1, 2", "x", "="],
@@ -29,6 +40,7 @@ EXAMPLES = {
     "size": ["16x8", "16", "0x0", "16x9", "4x2"],
     "fov": ["40deg", "180deg", "0deg", "300deg"],
     "look": ["180,-18", "90deg,0.1rad", "0,91", "180", "x,y"],
+    "face_names": ["px", "right", "a,b,c,d,e,f", "a,b", "a,a,b,c,d,e", "../px"],
     "rotate": ["0deg", "-90", "1e9deg", "north"],
     "sun_size": ["2deg", "0.1rad", "0", "21deg"],
     "sun_strength": ["0.5", "3", "0", "inf"],
@@ -57,7 +69,9 @@ EXAMPLES = {
     "dask": ["tcp://127.0.0.1:1"],
     "exposure_curve": ["own.csv", "no.csv"],
 }
-PATH_OPTIONS = {"output", "preview", "manifests", "contact_sheet", "animate", "emit_openjd"}
+PATH_OPTIONS = {
+    *("output", "preview", "lights", "manifests", "contact_sheet", "animate", "emit_openjd"),
+}
 ALWAYS = {
     "render": ("--method", "hillaire", "--size", "16x8"),
     "sequence": ("--method", "hillaire", "--dry-run"),

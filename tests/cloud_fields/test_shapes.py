@@ -165,6 +165,7 @@ def test_wind_carries_clouds_by_its_drift_and_nothing_else():
     np.testing.assert_allclose(drifted.origin, still.origin - drift)
 
 
+@pytest.mark.slow
 def test_evolution_is_continuous_and_replaces_all_clouds():
     like = layer("altocumulus", wind_speed=0.0)
     points = random_points(build_field(like), 50_000)

@@ -102,6 +102,7 @@ def second_errors(folder, quality):
     ]
 
 
+@pytest.mark.slow
 def test_cumuli_seen_from_the_ground_at_draft_quality(tmp_path):
     """The target at the default quality is a mean within 3 %, rms within 10 %."""
     cloud, gap = second_errors(tmp_path, "draft")
@@ -118,6 +119,7 @@ def test_cumuli_seen_from_the_ground(tmp_path):
     assert gap.mean < 0.05, gap
 
 
+@pytest.mark.slow
 def test_cumuli_under_a_high_sun_seen_from_the_ground_and_from_11_km(tmp_path):
     """The target is a mean within 3 % of clouds, 4 % from above, and 5 % of gaps."""
     cloud, gap, above, between = linear_errors(tmp_path, 60.0, "draft")

@@ -62,6 +62,7 @@ def test_a_layer_without_cover_leaves_the_clear_sky_to_the_byte(views):
     assert covered == clear
 
 
+@pytest.mark.slow
 def test_the_fast_method_agrees_with_the_path_tracer(world, views):
     _, fast = probed(world, views, *FEW)
     _, traced = probed(world, views, *FEW, "--method", "reference", "--samples", "6000")

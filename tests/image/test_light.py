@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from skybake.image.light import attributes_from_light, light_from_attributes, light_of_scene
 from skybake.image.scene import Scene
 from skybake.image.settings import map_settings
 from skybake.preset import load_preset
@@ -122,3 +123,10 @@ def test_light_of_a_map_is_the_solvers_own_within_half_a_percent(tmp_path, prese
     )
     scene = Scene(load_preset(preset), map_settings(sun_elevation=math.radians(elevation)))
     assert illuminance(baked, settings) == pytest.approx(solved_illuminance(scene), rel=0.005)
+
+
+def test_light_of_a_file_is_the_same_however_numpy_prints_numbers():
+    attributes = attributes_from_light(light_of_scene(Scene(load_preset("earth"), map_settings())))
+    plain = light_from_attributes(attributes)
+    with np.printoptions(legacy="1.13"):
+        assert light_from_attributes(attributes) == plain

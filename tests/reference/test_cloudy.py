@@ -205,6 +205,7 @@ def test_bearings_are_those_of_the_compass_and_tiles_run_east_and_north():
     assert list(np.flatnonzero(mean[:, 0])) == [6]
 
 
+@pytest.mark.slow
 def test_a_layer_is_the_same_in_two_halves():
     medium, views = vacuum(0.3), np.radians([20.0, 50.0, 150.0])
     arguments = (1.0, SUN, 0.0, views, 0.5)
