@@ -51,7 +51,7 @@ def _wavelengths(text: str) -> tuple[float, ...]:
 @moment_options
 @sun_distance_option()
 @altitude_option()
-@clouds_options(quality="high")
+@clouds_options()
 @click.option(
     "--directions",
     metavar="FILE.csv|-",

@@ -162,7 +162,7 @@ clouds_option = click.option(
 )
 
 
-def clouds_options(*, quality: str = "normal", is_range: bool = False) -> Decorator:
+def clouds_options(*, is_range: bool = False) -> Decorator:
     """Return ``--cloud-time``, a time or a range of them, and ``--clouds-quality``."""
     text = "How long clouds have drifted and changed, "
     return options_together(
@@ -176,7 +176,7 @@ def clouds_options(*, quality: str = "normal", is_range: bool = False) -> Decora
         click.option(
             "--clouds-quality",
             type=click.Choice(choices.CLOUD_QUALITIES),
-            default=quality,
+            default="normal",
             show_default=True,
             help="How finely the light of clouds is solved for.",
         ),
