@@ -9,6 +9,15 @@ import click
 
 from skybake.commands.options import choices, values
 from skybake.commands.options.rules import Needs, options_together
+from skybake.commands.options.written import (
+    clamp_negative_option,
+    compression_option,
+    ev_option,
+    fov_option,
+    look_option,
+    omit_exposure_option,
+    pixel_option,
+)
 from skybake.errors import InputError
 
 if TYPE_CHECKING:
@@ -53,20 +62,8 @@ map_options = options_together(
         help="Width and height, 2:1 for an equirect map, whose width is enough, or edge of a "
         "cubemap's face or of a square map.",
     ),
-    click.option(
-        "--fov",
-        metavar="ANGLE",
-        type=values.field_of_view,
-        show_default="180deg for a fisheye, 50deg for perspective",
-        help="Angle that the width of a fisheye or perspective picture covers.",
-    ),
-    click.option(
-        "--look",
-        metavar="AZIMUTH,ELEVATION",
-        type=values.look,
-        show_default="180,90 for a fisheye, 180,0 for perspective",
-        help="Where the middle of such a picture looks.",
-    ),
+    fov_option,
+    look_option,
     click.option(
         "--cube-layout",
         type=click.Choice(choices.CUBE_LAYOUTS),
@@ -117,26 +114,9 @@ map_options = options_together(
         show_default="ev15",
         help="What a pixel value of 1 stands for: 1.2 * 2^15 cd/m2, or 1 cd/m2.",
     ),
-    click.option(
-        "--ev",
-        metavar="N",
-        type=float,
-        help="Let a pixel value of 1 stand for 1.2 * 2^N cd/m2 instead.",
-    ),
-    click.option(
-        "--pixel",
-        type=click.Choice(choices.PIXELS),
-        show_default="auto",
-        help="Stored type; auto takes half where it holds every value. rgb9e5 and r11g11b10 are of "
-        "a .ktx2.",
-    ),
-    click.option(
-        "--compression",
-        metavar="NAME[:LEVEL]",
-        show_default="zip",
-        help="Of an EXR: none, rle, zips, zip[:1-9], piz, pxr24, b44, b44a, dwaa[:0-135], ...; "
-        "of a .ktx2: zstd (default) or none.",
-    ),
+    ev_option,
+    pixel_option,
+    compression_option,
     click.option(
         "--mips",
         is_flag=True,
@@ -148,12 +128,8 @@ map_options = options_together(
         is_flag=True,
         help="Keep sky, clouds and sun in parts of an .exr besides what they add up to.",
     ),
-    click.option("--clamp-negative", is_flag=True, help="Set negative values (out of gamut) to 0."),
-    click.option(
-        "--omit-exposure",
-        is_flag=True,
-        help="Leave the line EXPOSURE out of a .hdr, for programs that divide by it.",
-    ),
+    clamp_negative_option,
+    omit_exposure_option,
     click.option(
         "--sun-disc",
         type=click.Choice(choices.SUN_DISCS),
