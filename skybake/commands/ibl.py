@@ -20,6 +20,7 @@ from skybake.commands.options.lighting_settings import (
 )
 from skybake.commands.options.observer import (
     altitude_option,
+    positions,
     sun_azimuth_option,
     sun_distance_needs,
     sun_distance_option,
@@ -156,11 +157,7 @@ def _of_sky(
         options,
         program,
         maps.source_edge,
-        sun_elevation=options["sun_elevation"] if moment is None else moment.sun_elevation,
-        sun_azimuth=options["sun_azimuth"] if moment is None else moment.sun_azimuth,
-        altitude=options["altitude"],
-        cloud_time=options["cloud_time"] or 0.0,
-        clouds_quality=options["clouds_quality"],
+        **positions(options, moment),
     )
 
     from skybake.baking import default_path, late_kernels

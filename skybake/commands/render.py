@@ -15,6 +15,7 @@ from skybake.commands.options.clouds import check_clouds, clouds_options
 from skybake.commands.options.maps import map_needs, map_options, map_settings
 from skybake.commands.options.observer import (
     altitude_option,
+    positions,
     sun_azimuth_option,
     sun_distance_needs,
     sun_distance_option,
@@ -98,11 +99,7 @@ def render(**options: Any) -> None:
     moment = moment_from_options(context)
     settings = map_settings(
         options,
-        sun_elevation=options["sun_elevation"] if moment is None else moment.sun_elevation,
-        sun_azimuth=options["sun_azimuth"] if moment is None else moment.sun_azimuth,
-        altitude=options["altitude"],
-        cloud_time=options["cloud_time"] or 0.0,
-        clouds_quality=options["clouds_quality"],
+        **positions(options, moment),
     )
 
     from skybake.baking import bake, default_path, late_kernels

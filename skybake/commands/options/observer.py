@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from skybake.commands.options import values
 from skybake.commands.options.rules import Decorator, Needs
+
+if TYPE_CHECKING:
+    from skybake.ephemeris.moment import Moment
 
 
 def sun_option(*, is_range: bool = False) -> Decorator:
@@ -60,6 +63,25 @@ def altitude_option(*, is_range: bool = False) -> Decorator:
         show_default=True,
         help="Of the observer above the ground.",
     )
+
+
+def positions(options: Mapping[str, Any], moment: Moment | None) -> dict[str, Any]:
+    """Return where sun, observer and clouds are, as `skybake.image.settings.map_settings` takes it.
+
+    Parameters
+    ----------
+    options : mapping
+        With the values of the options of this module and of clouds.
+    moment : Moment or None
+        Whose sun comes before that of the options.
+    """
+    return {
+        "sun_elevation": options["sun_elevation"] if moment is None else moment.sun_elevation,
+        "sun_azimuth": options["sun_azimuth"] if moment is None else moment.sun_azimuth,
+        "altitude": options["altitude"],
+        "cloud_time": options["cloud_time"] or 0.0,
+        "clouds_quality": options["clouds_quality"],
+    }
 
 
 def _quantity(metavar: str, read: Callable[[str], float], *, is_range: bool) -> dict[str, Any]:
