@@ -104,6 +104,13 @@ def test_space_and_scale_change_the_numbers_and_not_the_light(map_of_earth, fold
     assert attributes["whiteLuminance"] == pytest.approx(tags["whiteLuminance"] / 2.0**5)
 
 
+def test_a_picture_to_look_at_is_written_by_another_command(map_of_earth, folder):
+    refused = invoke("convert", map_of_earth, "a.png")
+    assert refused.exit_code == 2
+    assert refused.stderr.endswith("a picture to look at is written by skybake preview\n")
+    assert not (folder / "a.png").exists()
+
+
 def test_what_is_not_to_change_does_not(map_of_earth, folder):
     convert(map_of_earth, "a.exr", "--pixel", "float")
     np.testing.assert_array_equal(read_image(folder / "a.exr")[0], read_image(map_of_earth)[0])

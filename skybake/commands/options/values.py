@@ -302,7 +302,9 @@ def with_suffix(
         for path in value if isinstance(value, tuple) else (value,):
             if path is not None and path.suffix.lower() not in suffixes:
                 known = " or ".join(suffixes)
-                hint = "; a picture to look at is written by --preview" if is_map(path) else ""
+                has_preview = any(one.name == "preview" for one in context.command.params)
+                way = "--preview" if has_preview else "skybake preview"
+                hint = f"; a picture to look at is written by {way}" if is_map(path) else ""
                 raise click.BadParameter(
                     f"{path}: suffix must be {known}, got {path.suffix!r}{hint}", context, option
                 )
