@@ -32,7 +32,7 @@ _ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasat
 
 _COMMANDS = (
     *("cache", "chart", "check", "clouds", "convert", "ibl", "presets", "preview", "probe"),
-    *("render", "sequence", "targets"),
+    *("render", "sequence", "shot", "targets"),
 )
 
 # Message of the RuntimeError where a thread gets no stack or is not allowed.

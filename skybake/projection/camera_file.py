@@ -16,6 +16,7 @@ from skybake.projection.camera import (
     WORLD_TO_CAMERA,
     WORLD_TO_NDC,
     Camera,
+    Place,
     camera_from_angles,
     camera_from_attributes,
 )
@@ -40,6 +41,7 @@ def load_camera(
     fov: float | None = None,
     aspect: float = 1.0,
     unit: float | None = None,
+    up: str | None = None,
 ) -> Camera:
     """Read a camera.
 
@@ -57,6 +59,8 @@ def load_camera(
         Width over height of the picture, where the file does not tell it.
     unit : float, optional
         Length of 1 in the world, in place of `units`. [km]
+    up : {"y", "z"}, optional
+        In place of `up_axis`.
 
     Raises
     ------
@@ -73,7 +77,7 @@ def load_camera(
     if not proportions > 0.0:
         raise InputError(f"{where}: aspect must be greater than 0, got {proportions:g}")
     width = _fov(told, where, proportions) if fov is None else fov
-    up = told.get("up_axis", "y")
+    up = told.get("up_axis", "y") if up is None else up
     if up not in {"y", "z"}:
         raise InputError(f"{where}: up_axis must be y or z, got {up!r}")
     if WORLD_TO_CAMERA in told or WORLD_TO_NDC in told:
@@ -81,7 +85,8 @@ def load_camera(
             told, where, fov=width, aspect=proportions, unit=unit, up=up
         )
     else:
-        camera = _from_angles(told, where, width, proportions, unit)
+        camera = _from_angles(told, where, width, proportions)
+        camera = replace(camera, position=_position(told, where, unit, up))
     return _shifted(camera, told, where)
 
 
@@ -96,9 +101,7 @@ def _read(path: Path) -> dict[str, Any]:
     return told
 
 
-def _from_angles(
-    told: Mapping[str, Any], where: str, fov: float | None, aspect: float, unit: float
-) -> Camera:
+def _from_angles(told: Mapping[str, Any], where: str, fov: float | None, aspect: float) -> Camera:
     for name in ("azimuth", "elevation"):
         if name not in told:
             raise InputError(
@@ -115,10 +118,13 @@ def _from_angles(
         raise InputError(
             f"{where}: elevation must be from -90 to 90, got {math.degrees(elevation):g}"
         )
+    return camera_from_angles(azimuth, elevation, roll, fov, aspect)
+
+
+def _position(told: Mapping[str, Any], where: str, unit: float, up: str) -> Place:
     x, *others = _numbers(told, "position", where, (0.0, 0.0, 0.0))
-    y, z = others if told.get("up_axis") != "z" else (others[1], -others[0])
-    camera = camera_from_angles(azimuth, elevation, roll, fov, aspect)
-    return replace(camera, position=(x * unit, y * unit, z * unit))
+    y, z = others if up == "y" else (others[1], -others[0])
+    return x * unit, y * unit, z * unit
 
 
 def _shifted(camera: Camera, told: Mapping[str, Any], where: str) -> Camera:

@@ -15,9 +15,11 @@ from skybake.commands.options import choices
 from skybake.commands.render import render
 from skybake.formats.preview import VIEWS
 from skybake.image import settings
+from skybake.image.aim import AIMS
 from skybake.image.target import TARGETS
 from skybake.preset import preset_names
 from skybake.projection import PROJECTIONS
+from skybake.projection.camera_file import UNITS as UNITS_OF_CAMERAS
 from skybake.projection.cubemap import LAYOUTS, SPACES
 from skybake.projection.equirect import ROWS
 from skybake.sky.sky import METHODS
@@ -110,6 +112,8 @@ def test_choices_are_those_of_the_engine():
     assert choices.SUN_DISCS == settings.SUN_DISCS
     assert choices.METHODS == METHODS
     assert choices.VIEWS == VIEWS
+    assert choices.AIMS == AIMS
+    assert set(choices.CAMERA_UNITS) == set(UNITS_OF_CAMERAS)
 
 
 def test_defaults_are_those_of_the_engine():
