@@ -31,7 +31,18 @@ _RENAMED_WITHIN = 10.0
 _ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
 
 _COMMANDS = (
-    *("cache", "chart", "check", "clouds", "convert", "ibl", "presets", "preview", "probe"),
+    *(
+        "aerial",
+        "cache",
+        "chart",
+        "check",
+        "clouds",
+        "convert",
+        "ibl",
+        "presets",
+        "preview",
+        "probe",
+    ),
     *("render", "sequence", "shot", "targets"),
 )
 

@@ -8,6 +8,8 @@ import click
 import pytest
 
 import skybake
+from skybake.aerial import bake
+from skybake.aerial.depth import BACKGROUNDS
 from skybake.cli import main
 from skybake.colour.exposure import UNITS
 from skybake.colour.space import COLOUR_SPACES
@@ -113,6 +115,10 @@ def test_choices_are_those_of_the_engine():
     assert choices.METHODS == METHODS
     assert choices.VIEWS == VIEWS
     assert choices.AIMS == AIMS
+    assert choices.AERIAL_METHODS == bake.METHODS
+    assert choices.DEPTH_KINDS == bake.DEPTH_KINDS
+    assert choices.SKIES_BEHIND == bake.SKIES
+    assert tuple(BACKGROUNDS) == choices.DEPTH_BACKGROUNDS
     assert set(choices.CAMERA_UNITS) == set(UNITS_OF_CAMERAS)
 
 
