@@ -29,6 +29,9 @@ from skybake.sidecar.map_light import MapLight, map_light
 FROM_BELOW = ("skybake:illuminanceFromBelow", "skybake:groundIlluminanceFromBelow")
 """Attributes of maps that do not show the ground. [lx]"""
 
+STAR_ILLUMINANCE = "skybake:starIlluminance"
+"""Attribute of maps with stars: of the horizontal by them. [lx]"""
+
 Progress = Callable[[float], None]
 
 
@@ -61,6 +64,8 @@ class Baked(Light):
         All about the light that a renderer needs, if it was asked for.
     light_files : tuple of Path
         The files that tell it.
+    star_illuminance : float or None
+        Of the horizontal by stars; None of a map without them. [lx]
     """
 
     files: tuple[Path, ...]
@@ -74,6 +79,7 @@ class Baked(Light):
     warnings: tuple[str, ...] = ()
     map_light: MapLight | None = None
     light_files: tuple[Path, ...] = ()
+    star_illuminance: float | None = None
 
 
 def bake(
@@ -220,11 +226,12 @@ def bake_scene(
         scene.light_clouds()
     begin("pixels")
     light = light_of_scene(scene)
-    from_below = _from_below(scene)
+    from_below, by_stars = _from_below(scene), _star_illuminance(scene)
     described = None if light_files is None else map_light(scene, light)
     attributes = {
         **attributes_from_light(light),
         **({} if from_below is None else dict(zip(FROM_BELOW, from_below, strict=True))),
+        **({} if by_stars is None else {STAR_ILLUMINANCE: by_stars}),
         **recipe_attributes(planet, settings),
         **(attributes or {}),
     }
@@ -287,6 +294,7 @@ def bake_scene(
         warnings=tuple(warnings),
         map_light=described,
         light_files=tuple(light_files or ()),
+        star_illuminance=by_stars,
     )
 
 
@@ -296,6 +304,14 @@ def _from_below(scene: Scene) -> tuple[float, float] | None:
     from skybake.image.below_horizon import light_from_below
 
     return light_from_below(scene)
+
+
+def _star_illuminance(scene: Scene) -> float | None:
+    if scene.stars is None:
+        return None
+    from skybake.image.starry import star_illuminance
+
+    return star_illuminance(scene, scene.stars)
 
 
 def _ignore(_: str) -> None:
