@@ -17,7 +17,12 @@ from skybake.formats.preview import check_preview
 from skybake.formats.spec import Attribute, MapSpec
 from skybake.formats.whole_files import WholeFiles
 from skybake.formats.writer import check_map_path
-from skybake.image.light import Light, attributes_from_light, light_of_scene
+from skybake.image.light import (
+    Light,
+    attributes_from_light,
+    eclipse_attributes,
+    light_of_scene,
+)
 from skybake.image.picture_settings import PictureSettings
 from skybake.image.raster import Raster
 from skybake.image.recipe import recipe_attributes
@@ -225,6 +230,7 @@ def bake_scene(
     attributes = {
         **attributes_from_light(light),
         **({} if from_below is None else dict(zip(FROM_BELOW, from_below, strict=True))),
+        **eclipse_attributes(scene),
         **recipe_attributes(planet, settings),
         **(attributes or {}),
     }
