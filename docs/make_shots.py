@@ -12,7 +12,7 @@ SHOTS = {
     "shuttle": "--altitude 350km --sun=-22deg --look limb --fov 12deg",
     "sunset": "--altitude 400km --sun=-18.5deg --look limb --fov 40deg --roll 12deg",
     "globe": "--altitude 36000km --sun 25deg --sun-azimuth 110deg --look planet",
-    "mars": "--preset mars --altitude 300km --sun=-10deg --look limb --fov 45deg",
+    "mars": "--preset mars --altitude 300km --sun=-10deg --look limb --fov 38deg",
     "mars-night": "--preset mars --altitude 250km --sun=-23deg --look limb --fov 30deg",
 }
 

@@ -21,8 +21,17 @@ from skybake.commands.options.camera import (
 )
 from skybake.commands.options.clouds import check_clouds, clouds_options
 from skybake.commands.options.maps import given_settings, map_options
+from skybake.commands.options.night import (
+    lst_option,
+    night_from_options,
+    night_needs,
+    night_options,
+)
 from skybake.commands.options.observer import (
     altitude_option,
+    moon_from_options,
+    moon_needs,
+    moon_options,
     positions,
     sun_azimuth_option,
     sun_distance_needs,
@@ -56,7 +65,10 @@ _STORED = (
 @sun_azimuth_option()
 @moment_options
 @sun_distance_option()
+@moon_options("--time")
 @altitude_option()
+@night_options
+@lst_option
 @clouds_options()
 @aim_option
 @click.option(
@@ -125,6 +137,8 @@ def shot(**options: Any) -> None:
         context,
         moment_needs(context),
         sun_distance_needs(options, is_timed=is_timed, time="--time"),
+        moon_needs(options, is_timed=is_timed, time="--time"),
+        night_needs(options, is_timed=is_timed, time="--time"),
         _needs(options),
     )
     moment = moment_from_options(context)
@@ -139,11 +153,18 @@ def shot(**options: Any) -> None:
     check_clouds(context, planet)
     projection = _projection(options, planet, where)
     try:
-        settings = image_settings.map_settings(projection, **given_settings(options), **where)
+        settings = image_settings.map_settings(
+            projection,
+            **given_settings(options),
+            **where,
+            night=night_from_options(options, moment),
+        )
     except InputError as error:
         raise click.UsageError(f"--{error}") from error
     distance = sun_distance(planet, moment, options["sun_distance"])
-    settings = replace(settings, lighting=replace(settings.lighting, sun_distance=distance))
+    moon = moon_from_options(options, planet, moment, distance)
+    lighting = replace(settings.lighting, sun_distance=distance, moon=moon)
+    settings = replace(settings, lighting=lighting)
     output = options["output"] or default_path(planet, settings)
     preview = None if options["no_preview"] else options["preview"] or preview_beside(output)
     quiet = options["quiet"]

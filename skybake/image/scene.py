@@ -31,6 +31,9 @@ from skybake.sky.table import FoldedTable
 if TYPE_CHECKING:
     from skybake.clouds.cloudscape import Cloudscape
     from skybake.image.cloudy import CloudsOver
+    from skybake.image.eclipsed import LeftShare
+    from skybake.image.night_glow import NightGlow
+    from skybake.night.stars import Stars
 
 SURVEY_ROWS = 256
 """Rows of an equirect map by which the light of a scene is judged."""
@@ -46,13 +49,6 @@ UNDERSHOOT = 0.01
 """Of the brightest luminance: the most that cubics may be below 0; it is 0 then."""
 
 CELLS_AT_ONCE = 32768
-
-_LAYERS = {
-    "include": ("sky", "sun"),
-    "exclude": ("sky",),
-    "only": ("sun",),
-    "separate": ("sky", "sun"),
-}
 
 
 class Scene:
@@ -87,6 +83,7 @@ class Scene:
             settings.view.altitude,
             sun_azimuth=settings.lighting.sun_azimuth,
             sun_distance=settings.lighting.sun_distance,
+            moon=settings.lighting.moon,
             method=settings.lighting.method,
             workers=workers,
         )
@@ -160,10 +157,33 @@ class Scene:
             workers=self.workers,
         )
 
+    @cached_property
+    def stars(self) -> Stars | None:
+        """The stars over the observer, or None where none are seen."""
+        if not self.settings.night.shows_stars:
+            return None
+        from skybake.image.starry import visible_stars
+
+        return visible_stars(self)
+
+    @cached_property
+    def night_glow(self) -> NightGlow | None:
+        """The light of the sky between the stars, or None where none is seen."""
+        if not self.settings.night.shows_glow:
+            return None
+        from skybake.image.night_glow import visible_glow
+
+        return visible_glow(self)
+
     def light_clouds(self) -> None:
         """Solve for the light of clouds, which takes longest, before pixels show them."""
         if self.cloudscape is not None:
             _ = self.cloudscape.nodes
+
+    @property
+    def clear_survey(self) -> np.ndarray:
+        """As `survey`, without clouds."""
+        return self._surveyed[1]
 
     @cached_property
     def survey(self) -> np.ndarray:
@@ -175,7 +195,11 @@ class Scene:
             If its luminance is negative beyond rounding, or not finite.
         """
         if self.cloudscape is None:
-            return self._surveyed[1]
+            if self.night_glow is None:
+                return self._surveyed[1]
+            zenith = row_zeniths(SURVEY_ROWS)[:, None]
+            azimuth = column_bearings(2 * SURVEY_ROWS)[None]
+            return self.evaluate(zenith, azimuth, math.pi / SURVEY_ROWS)
         rows = SURVEY_ROWS // 2
         coarse = self.evaluate(
             row_zeniths(rows)[:, None], column_bearings(2 * rows)[None], math.pi / rows
@@ -239,7 +263,11 @@ class Scene:
     @property
     def layer_names(self) -> tuple[str, ...]:
         """Layers that a map of the scene holds."""
-        return _LAYERS[self.settings.lighting.sun_disc]
+        if self.settings.night.stars == "only":
+            return ("stars",)
+        disc = self.settings.lighting.sun_disc
+        names = ("sun",) if disc == "only" else ("sky",) if disc == "exclude" else ("sky", "sun")
+        return (*names, "stars") if "sky" in names and self.stars is not None else names
 
     @property
     def luminance(self) -> Array:
@@ -291,8 +319,9 @@ class Scene:
     @cached_property
     def _sky_on_horizontal(self) -> Array:
         """Irradiance of the horizontal by the sky, in pixel values, shape (3,). [sr]"""
-        # Without clouds both sides of the sun are alike.
-        return horizontal_irradiance(self.evaluate, is_even=self.cloudscape is None)
+        # Without clouds, an eclipse or a night both sides of the sun are alike.
+        is_even = self.cloudscape is None and self.sky.eclipse is None and self.night_glow is None
+        return horizontal_irradiance(self.evaluate, is_even=is_even)
 
     def evaluate(self, zenith: Array, azimuth: Array, footprint: Array | float) -> np.ndarray:
         """Pixel values of the sky, see `fill_directions`, shape (row, column, 3).
@@ -314,6 +343,8 @@ class Scene:
         # The least value is found 50 times as fast as luminances are.
         if pixels.min(initial=0.0) < 0.0 or weights.min() < 0.0:
             pixels[pixels @ weights < 0.0] = 0.0
+        if self.night_glow is not None:
+            self.night_glow.add(zenith, azimuth, footprint, pixels)
         return pixels
 
     def clouds_over(self, cloudscape: Cloudscape) -> CloudsOver:
@@ -339,4 +370,15 @@ class Scene:
             fill_directions(*pixels, first, last, scratch, out[first:last])
 
         self.workers.run_rows(rows, work, chunk=128 // self.workers.shares(8))
+        if self._left_share is not None:
+            self._left_share.dim(zenith, azimuth, out, self.workers)
         return out
+
+    @cached_property
+    def _left_share(self) -> LeftShare | None:
+        """What an eclipse leaves of the light in each direction, if there is one."""
+        if self.sky.eclipse is None:
+            return None
+        from skybake.image.eclipsed import left_share
+
+        return left_share(self.sky.eclipse, self.xyz_weights, self.settings.encoding.space)
