@@ -92,8 +92,9 @@ def load_camera(
 
 def _read(path: Path) -> dict[str, Any]:
     where = str(path)
+    text = read_text(path, where, LARGEST)
     try:
-        told = json.loads(read_text(path, where, LARGEST))
+        told = json.loads(text)
     except (ValueError, RecursionError) as error:
         raise InputError(f"{where}: must be JSON, got {error}") from error
     if not isinstance(told, dict):

@@ -270,6 +270,7 @@ def test_what_depths_of_the_background_mean_can_be_said(scene, value):
     [
         (("--sun-size", "2deg"), "--sun-size: needs --sky fill"),
         (("--sky", "fill", "--sun-disc", "only"), "--sun-disc only: must be include or exclude"),
+        (("--fov", "190deg"), "--fov: must be less than 180deg for a camera, got 190deg"),
         (("--units", "nits", "--ev", "3"), "--units: cannot be combined with --ev"),
         (("--depth", "z.png"), "z.png: suffix must be .exr"),
     ],

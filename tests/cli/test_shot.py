@@ -106,7 +106,7 @@ def test_wrong_use_of_a_shot_is_told_in_a_line(folder, arguments, problem):
         ),
         ({"azimuth": 0, "elevation": 0, "fov": 50, "aspect": 1}, "such as 64x64, got 64x36"),
         ({"worldToCamera": [0] * 16, "fov": 50}, "last column must be 0 0 0 1"),
-        (None, "camera.json: cannot be read: No such file"),
+        (None, "skybake: camera.json: cannot be read: No such file"),
     ],
 )
 def test_a_camera_that_cannot_be_is_refused_in_a_line(folder, told, problem):

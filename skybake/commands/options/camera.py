@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -84,9 +85,16 @@ def camera_from_file(
 
     Raises
     ------
+    click.UsageError
+        If no plane shows so wide a field.
     InputError
         If the file tells no camera.
     """
+    if fov is not None and fov >= math.pi:
+        raise click.UsageError(
+            f"--fov: must be less than 180deg for a camera, got {math.degrees(fov):g}deg"
+        )
+
     from skybake.projection.camera import METRE, camera_from_attributes
     from skybake.projection.camera_file import UNITS, load_camera
 
