@@ -86,7 +86,10 @@ def _add_air(volume, place, scratch, light, passing):
     rows, columns, ends, values = volume.light.shape
     weights, sums = scratch.weights, scratch.sums
     row = _cubic((place[0] - volume.angle_first) / volume.angle_step, rows, weights[0])
-    column = _cubic(place[1] / math.pi * (columns - 1), columns, weights[1])
+    around = place[1] / math.pi * (columns - 1)
+    column = min(int(around), columns - 2)
+    weights[1, 1] = around - column
+    weights[1, 0] = 1.0 - weights[1, 1]
     way = math.log(place[2] + volume.near) + SPREAD * place[2]
     end = _cubic((way - volume.way_first) / volume.way_step, ends, weights[2])
     w0, w1 = np.float32(weights[2, 0]), np.float32(weights[2, 1])
@@ -94,7 +97,7 @@ def _add_air(volume, place, scratch, light, passing):
     for k in range(values):
         sums[k] = np.float32(0.0)
     for p in range(TAPS):
-        for q in range(TAPS):
+        for q in range(2):
             weight = np.float32(weights[0, p] * weights[1, q])
             f0, f1, f2, f3 = w0 * weight, w1 * weight, w2 * weight, w3 * weight
             nodes = volume.light[row + p, column + q]

@@ -16,7 +16,7 @@ from skybake.scattering.segments import MAX_DISTANCES, SHORTEST, trace_segments
 from skybake.sky.skylight import Skylight
 from skybake.sky.source import Source
 from skybake.sky.spectral_table import resample_azimuths
-from skybake.sky.table import AZIMUTHS, EDGE, ray_azimuths
+from skybake.sky.table import EDGE, ray_azimuths
 
 Floats = npt.NDArray[np.float32]
 
@@ -32,6 +32,9 @@ NEAREST = 1e-9
 
 CURVE_ERROR = 1e-4
 """Of the root mean square over angles, by which curves may be left out."""
+
+AZIMUTHS = 385
+"""So many, from the cosine series of the rays', that pixels are linear between them."""
 
 LANES = 2
 TAPS = 4
