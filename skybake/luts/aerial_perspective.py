@@ -35,8 +35,9 @@ def screen_directions(settings: TableSettings, x: Array, y: Array) -> Array:
     frame = look_frame(settings.azimuth, settings.elevation)
     right = settings.half_width * (2.0 * x[..., None] - 1.0)
     up = settings.half_height * (1.0 - 2.0 * y[..., None])
-    vectors = frame.forward + right * frame.right + up * frame.up
-    unit: Array = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    # Not the length of the sum, whose rounding would differ between the left and the right.
+    length = np.sqrt(1.0 + right**2 + up**2)
+    unit: Array = (frame.forward + right * frame.right + up * frame.up) / length
     return unit
 
 
@@ -93,9 +94,13 @@ def aerial_tables(
     places = mapping.texels(settings.aerial_size, constants)
     across, down = places["screen_x"][0], places["screen_y"][0]
     directions = screen_directions(settings, *np.broadcast_arrays(across, down))
-    found = air_segments(scene, directions, places["distance"].ravel())
-    light = found.radiance / scene.sky.irradiance @ scene.rgb_weights
-    passed = found.transmittance @ colour_shares(scene.rgb_weights)
+    # Columns on either side of the middle look equally high: side by side they share samples.
+    columns = np.arange(settings.aerial_size[0])
+    paired = np.argsort(np.minimum(columns, columns[::-1]), kind="stable")
+    found = air_segments(scene, directions[:, paired], places["distance"].ravel())
+    in_order = np.argsort(paired)
+    light = (found.radiance / scene.sky.irradiance @ scene.rgb_weights)[:, in_order]
+    passed = (found.transmittance @ colour_shares(scene.rgb_weights))[:, in_order]
     white = scene.rgb_weights.sum(axis=0) * luminance_weights(scene.settings.encoding.space)
     mean = passed @ (white / white.sum())
     # From (row, column, slice, ...) to slices of rows.
