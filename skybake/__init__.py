@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from skybake.environment.environment import Environment
     from skybake.environment.load import load_environment
     from skybake.environment.resample import resample
+    from skybake.ephemeris.celestial import CelestialFrame
     from skybake.ephemeris.moment import Moment, TimeSpan, sun_at
     from skybake.ephemeris.place import SITES, Place, find_place
     from skybake.errors import (
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     )
     from skybake.image.image import Image
     from skybake.image.light import Light
+    from skybake.image.night import Night
     from skybake.image.picture_settings import PictureSettings
     from skybake.image.scene import Scene
     from skybake.image.settings import Clouds, Encoding, Lighting, MapSettings, View, map_settings
@@ -93,6 +95,7 @@ __all__ = [
     "ArgumentError",
     "Baked",
     "CancelledError",
+    "CelestialFrame",
     "CloudLayer",
     "Clouds",
     "Coefficients",
@@ -121,6 +124,7 @@ __all__ = [
     "MapLight",
     "MapSettings",
     "Moment",
+    "Night",
     "Octahedral",
     "OutputError",
     "Override",
@@ -179,6 +183,7 @@ _HOMES = {
     "ArgumentError": "skybake.errors",
     "Baked": "skybake.baking",
     "CancelledError": "skybake.errors",
+    "CelestialFrame": "skybake.ephemeris.celestial",
     "CloudLayer": "skybake.preset",
     "Clouds": "skybake.image.settings",
     "Coefficients": "skybake.preset",
@@ -207,6 +212,7 @@ _HOMES = {
     "MapLight": "skybake.sidecar.map_light",
     "MapSettings": "skybake.image.settings",
     "Moment": "skybake.ephemeris.moment",
+    "Night": "skybake.image.night",
     "Octahedral": "skybake.projection",
     "OutputError": "skybake.errors",
     "Override": "skybake.preset",

@@ -13,6 +13,12 @@ from skybake.commands.memory import check_memory
 from skybake.commands.options import choices, values
 from skybake.commands.options.clouds import check_clouds, clouds_options
 from skybake.commands.options.maps import map_needs, map_options, map_settings
+from skybake.commands.options.night import (
+    lst_option,
+    night_from_options,
+    night_needs,
+    stars_option,
+)
 from skybake.commands.options.observer import (
     altitude_option,
     positions,
@@ -42,6 +48,8 @@ from skybake.commands.printing.progress import map_progress
 @moment_options
 @sun_distance_option()
 @altitude_option()
+@stars_option
+@lst_option
 @clouds_options()
 @map_options
 @click.option(
@@ -89,6 +97,7 @@ def render(**options: Any) -> None:
         context,
         moment_needs(context),
         sun_distance_needs(options, is_timed=is_timed, time="--time"),
+        night_needs(options, is_timed=is_timed, time="--time"),
         map_needs(options),
         preview_needs(options),
     )
@@ -100,6 +109,7 @@ def render(**options: Any) -> None:
     settings = map_settings(
         options,
         **positions(options, moment),
+        night=night_from_options(options, moment),
     )
 
     from skybake.baking import bake, default_path, late_kernels

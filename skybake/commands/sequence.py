@@ -21,6 +21,7 @@ from skybake.commands.options.emit import (
     is_asked,
 )
 from skybake.commands.options.maps import map_needs, map_options, map_settings
+from skybake.commands.options.night import night_from_options, night_needs, stars_option
 from skybake.commands.options.observer import (
     altitude_option,
     sun_azimuth_option,
@@ -58,6 +59,7 @@ SOME_FAILED = 3
 @span_options
 @sun_distance_option()
 @altitude_option(is_range=True)
+@stars_option
 @clouds_options(is_range=True)
 @click.option(
     "--frames",
@@ -151,6 +153,7 @@ def sequence(**options: Any) -> None:
         context,
         span_needs(context),
         sun_distance_needs(options, is_timed=options["start"] is not None, time="--from and --to"),
+        night_needs(options, is_timed=options["start"] is not None, time="--from and --to"),
         map_needs(options),
         preview_needs(options),
         emit_needs(options),
@@ -212,7 +215,9 @@ def _plan_from_options(context: click.Context) -> Plan:
     """
     options = context.params
     times = span_from_options(context)
-    settings = map_settings(options, clouds_quality=options["clouds_quality"])
+    settings = map_settings(
+        options, clouds_quality=options["clouds_quality"], night=night_from_options(options)
+    )
     changes = changes_from_options(context)
 
     from skybake.sequence.planning import plan_sequence

@@ -31,6 +31,7 @@ from skybake.sky.table import FoldedTable
 if TYPE_CHECKING:
     from skybake.clouds.cloudscape import Cloudscape
     from skybake.image.cloudy import CloudsOver
+    from skybake.night.stars import Stars
 
 SURVEY_ROWS = 256
 """Rows of an equirect map by which the light of a scene is judged."""
@@ -160,10 +161,24 @@ class Scene:
             workers=self.workers,
         )
 
+    @cached_property
+    def stars(self) -> Stars | None:
+        """The stars over the observer, or None where none are seen."""
+        if not self.settings.night.shows_stars:
+            return None
+        from skybake.image.starry import visible_stars
+
+        return visible_stars(self)
+
     def light_clouds(self) -> None:
         """Solve for the light of clouds, which takes longest, before pixels show them."""
         if self.cloudscape is not None:
             _ = self.cloudscape.nodes
+
+    @property
+    def clear_survey(self) -> np.ndarray:
+        """As `survey`, without clouds."""
+        return self._surveyed[1]
 
     @cached_property
     def survey(self) -> np.ndarray:
@@ -239,7 +254,10 @@ class Scene:
     @property
     def layer_names(self) -> tuple[str, ...]:
         """Layers that a map of the scene holds."""
-        return _LAYERS[self.settings.lighting.sun_disc]
+        if self.settings.night.stars == "only":
+            return ("stars",)
+        names = _LAYERS[self.settings.lighting.sun_disc]
+        return (*names, "stars") if "sky" in names and self.stars is not None else names
 
     @property
     def luminance(self) -> Array:

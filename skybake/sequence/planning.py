@@ -11,6 +11,7 @@ from skybake.baking.paths import preview_beside, usual_suffix, world_name
 from skybake.ephemeris.moment import Moment, TimeSpan
 from skybake.ephemeris.place import check_planet
 from skybake.errors import ArgumentError, InputError
+from skybake.image.night import Night, night_at
 from skybake.image.settings import MapSettings
 from skybake.image.sun_distance import sun_distance as distance_of_sun
 from skybake.optics.changes import PresetChanges
@@ -115,6 +116,7 @@ def plan_sequence(
             _at(altitude, share),
             None if exposure_curve is None else exposure_curve.at(number),
             None if drift is None or not planets[world].clouds else drift[i],
+            settings.night if moment is None else night_at(settings.night, moment),
         )
         planned.append(
             Frame(
@@ -235,6 +237,7 @@ def _settings_at(
     altitude: float | None,
     ev: float | None,
     cloud_time: float | None,
+    night: Night,
 ) -> MapSettings:
     """Return settings with what a frame has of its own; None leaves a value as it is.
 
@@ -251,4 +254,4 @@ def _settings_at(
     if ev is not None:
         encoding = replace(encoding, ev=ev)
     clouds = settings.clouds if cloud_time is None else replace(settings.clouds, time=cloud_time)
-    return MapSettings(view, lighting, encoding, clouds)
+    return MapSettings(view, lighting, encoding, clouds, night)
