@@ -17,6 +17,8 @@ from skybake.luts.parametrisations import INPUTS
 from skybake.luts.settings import TableSettings
 from skybake.luts.table import Table
 from skybake.luts.transmittance import colour_shares
+from skybake.optics.medium import Array
+from skybake.optics.phase import eval_phase
 from skybake.units import degrees, metres
 from skybake.version import __version__
 
@@ -24,6 +26,7 @@ VERSION = 1
 """Of the layout of ``luts.json``."""
 
 PROFILE_NODES = 65
+PHASE_NODES = 91
 
 _CONVENTIONS = {
     "axes": "right-handed, +X east, +Y up, +Z south (-Z north); azimuths are compass bearings, "
@@ -173,19 +176,30 @@ def _medium(scene: Scene) -> dict[str, Any]:
         [np.interp(places, np.arange(len(each)), each) for each in medium.density.T], axis=0
     )
     is_exact = planet.rendering != "spectral"
+    angle = np.linspace(0.0, 1.0, PHASE_NODES) ** 2 * math.pi
+    phase = eval_phase(medium.phase, np.cos(angle))
+    scattered = medium.scattering[:, :, None] * shares
     return {
         "colours": "of the wavelengths that stand for red, green and blue"
         if is_exact
         else "means over sunlight, approximate where air is thick: transmittance is no exponential "
         "of them",
         "altitude_km": (nodes * height).tolist(),
+        "scattering_angle_rad": angle.tolist(),
         "constituents": {
             constituent.name: {
                 "scattering_per_km": (medium.scattering[i] @ shares).tolist(),
                 "extinction_per_km": (medium.extinction[i] @ shares).tolist(),
                 "relative_density": density[i].tolist(),
+                "phase_per_sr": _weighted(phase[:, i], scattered[i]).tolist(),
             }
             for i, constituent in enumerate(planet.constituents)
         },
         "ground_albedo": (medium.ground_albedo @ shares).tolist(),
     }
+
+
+def _weighted(values: Array, weights: Array) -> Array:
+    """Means over wavelengths by the weights of each colour, 0 where there are none, (angle, 3)."""
+    total = weights.sum(axis=0)
+    return (values @ weights) / np.where(total == 0.0, 1.0, total)

@@ -180,3 +180,39 @@ def test_the_disc_brings_the_light_of_the_sun(scene):
     )
     rings = 2.0 * math.pi * known["SUN_SINE"] ** 2 * share / 2000
     np.testing.assert_allclose(rings @ profile, known["SUN_ILLUMINANCE"], rtol=1e-4)
+
+
+@pytest.mark.parametrize("sun", [60.0, 10.0])
+def test_a_march_with_tables_and_constituents_of_the_files_gives_the_sky(tmp_path, sun):
+    """As Hillaire's renderer does it, in the world and by the method of his paper."""
+    scene = scene_of(sun=sun, altitude=0.5, method="hillaire")
+    about = baked(tmp_path, scene, parametrisation="bruneton2017")
+    made = tables_of(scene, parametrisation="bruneton2017")
+    medium, sunward = about["medium"], vector(about, "SUN_DIRECTION")
+    bottom = about["constants"]["BOTTOM_RADIUS"]["value"]
+    for toward in ([0.0, 1.0, 0.0], [0.6, 0.8, 0.0], [-0.5, 0.3, 0.8], [0.1, 0.2, -0.9]):
+        view = np.array(toward) / np.linalg.norm(toward)
+        ends = 600.0 * np.linspace(0.0, 1.0, 400) ** 2
+        middle, length = 0.5 * (ends[1:] + ends[:-1]), np.diff(ends)
+        places = np.array([0.0, bottom + 0.5, 0.0]) + middle[:, None] * view
+        radius = np.linalg.norm(places, axis=1)
+        altitude, mu_s = radius - bottom, places @ sunward / radius
+        inside = altitude < medium["altitude_km"][-1]
+        angle = math.acos(view @ sunward)
+        scattering, extinction, phased = (np.zeros((middle.size, 3)) for _ in range(3))
+        for one in medium["constituents"].values():
+            density = np.interp(altitude, medium["altitude_km"], one["relative_density"]) * inside
+            phase = np.array(one["phase_per_sr"])
+            here = [np.interp(angle, medium["scattering_angle_rad"], each) for each in phase.T]
+            scattering += np.outer(density, one["scattering_per_km"])
+            extinction += np.outer(density, one["extinction_per_km"])
+            phased += np.outer(density, one["scattering_per_km"]) * here
+        inputs = {"altitude": np.minimum(altitude, 99.9)}
+        lit = look_up(made.tables["transmittance"], made.constants, {**inputs, "mu": mu_s})
+        mean = look_up(made.tables["multiple_scattering"], made.constants, {**inputs, "mu_s": mu_s})
+        depth = np.cumsum(extinction * length[:, None], axis=0)
+        passed = np.exp(-(depth - 0.5 * extinction * length[:, None]))
+        light = (passed * (phased * lit + scattering * mean) * length[:, None]).sum(axis=0)
+        found = light * vector(about, "SUN_ILLUMINANCE")
+        expected = scene.sky.radiance(view) / scene.sky.irradiance @ scene.rgb_weights
+        np.testing.assert_allclose(found, expected, rtol=0.01)
