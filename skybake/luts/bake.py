@@ -156,7 +156,7 @@ def make_tables(
 
 def bake_tables(
     scene: Scene,
-    folder: Path,
+    folder: Path | str,
     settings: TableSettings | None = None,
     *,
     attributes: Values[str, Attribute] | None = None,
@@ -168,7 +168,7 @@ def bake_tables(
     ----------
     scene, settings, begin
         As of `make_tables`.
-    folder : Path
+    folder : Path or str
         Where to; it is made if only the folder that holds it exists.
     attributes : mapping of str to Attribute, optional
         What files shall state besides.
@@ -178,7 +178,7 @@ def bake_tables(
     SkybakeError
         If the scene, a setting or a target cannot be used; no file is left then.
     """
-    settings = settings or TableSettings()
+    settings, folder = settings or TableSettings(), Path(folder)
     check_scene(scene)
     with folder_of_tables(folder):
         made = make_tables(scene, settings, begin)
