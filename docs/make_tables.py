@@ -135,7 +135,7 @@ def volume_rows() -> Iterator[list[str]]:
             settings = TableSettings(parametrisation=name, elevation=math.radians(look))
             made = make_tables(scene, settings)
             true = air_segments(scene, screen_directions(settings, x, y), distances)
-            light = true.radiance / scene.sky.irradiance @ scene.rgb_weights @ scene.luminance
+            light = true.radiance @ scene.rgb_weights @ scene.luminance
             passed = true.transmittance @ colour_shares(scene.rgb_weights)
             inputs = {"screen_x": x[:, None], "screen_y": y[:, None], "distance": distances}
             near = made.constants["NEAREST"][0]

@@ -15,11 +15,14 @@ from skybake.luts.table import Table, texels
 from skybake.luts.transmittance import colour_shares
 from skybake.optics.medium import Array
 from skybake.projection.frame import look_frame
-from skybake.sky.skylight import Segments
+from skybake.sky.skylight import Segments, Skylight
 
 ABOVE_GROUND = 1e-6
 """How far before the ground rays end, so that its own light is not counted as that of the air.
 [km]"""
+
+
+TEXELS_AT_ONCE = 1 << 16
 
 
 def screen_directions(settings: TableSettings, x: Array, y: Array) -> Array:
@@ -62,12 +65,33 @@ def air_segments(scene: Scene, directions: Array, distances: Array) -> Segments:
         Unit vectors.
     distances : ndarray of float64, shape (distance,)
         Ascending; those behind the ground count as just before it. [km]
+
+    Returns
+    -------
+    Segments
+        Radiance is per unit irradiance of the sun. [sr⁻¹]
     """
-    skylight = scene.sky.skylight
-    bottom = scene.sky.medium.r_bottom
-    ground = ground_distances(skylight.radius, bottom, directions[..., 1])
+    sky = scene.sky
+    source = replace(sky.source, irradiance=np.ones_like(sky.irradiance))
+    skylight = Skylight(sky.atmosphere, sky.skylight.observer, (source,), workers=scene.workers)
+    ground = ground_distances(skylight.radius, sky.medium.r_bottom, directions[..., 1])
     most = np.maximum(ground - ABOVE_GROUND, 0.0)
     return skylight.segments(directions, np.minimum(distances, most[..., None]))
+
+
+def _colours(scene: Scene, directions: Array, distances: Array) -> tuple[Array, Array]:
+    """Light and transmittance of each colour along rays, shape (ray, distance, 3)."""
+    distances = distances.ravel()
+    light, passed = (np.empty((len(directions), distances.size, 3)) for _ in range(2))
+    shares = colour_shares(scene.rgb_weights)
+    # Rays in all wavelengths take much more memory than colours do.
+    step = max(2, TEXELS_AT_ONCE // distances.size)
+    for first in range(0, len(directions), step):
+        part = slice(first, first + step)
+        found = air_segments(scene, directions[part], distances)
+        light[part] = found.radiance @ scene.rgb_weights
+        passed[part] = found.transmittance @ shares
+    return light, passed
 
 
 def aerial_tables(
@@ -97,10 +121,10 @@ def aerial_tables(
     # Columns on either side of the middle look equally high: side by side they share samples.
     columns = np.arange(settings.aerial_size[0])
     paired = np.argsort(np.minimum(columns, columns[::-1]), kind="stable")
-    found = air_segments(scene, directions[:, paired], places["distance"].ravel())
-    in_order = np.argsort(paired)
-    light = (found.radiance / scene.sky.irradiance @ scene.rgb_weights)[:, in_order]
-    passed = (found.transmittance @ colour_shares(scene.rgb_weights))[:, in_order]
+    light, passed = (
+        each.reshape(*directions.shape[:2], -1, 3)[:, np.argsort(paired)]
+        for each in _colours(scene, directions[:, paired].reshape(-1, 3), places["distance"])
+    )
     white = scene.rgb_weights.sum(axis=0) * luminance_weights(scene.settings.encoding.space)
     mean = passed @ (white / white.sum())
     # From (row, column, slice, ...) to slices of rows.

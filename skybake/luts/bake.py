@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from collections.abc import Mapping as Values
 from dataclasses import dataclass
 from pathlib import Path
@@ -31,8 +30,6 @@ from skybake.luts.sky_view import sky_view_table
 from skybake.luts.table import Table
 from skybake.luts.transmittance import transmittance_table
 from skybake.version import __version__
-
-Begin = Callable[[str], None]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -76,10 +73,6 @@ class BakedTables:
     recipe_hash: str
 
 
-def ignore(_: str) -> None:
-    """Take no notice of a stage that begins."""
-
-
 def check_scene(scene: Scene) -> None:
     """Refuse a sky of which there are no tables.
 
@@ -105,9 +98,7 @@ def check_scene(scene: Scene) -> None:
         raise InputError("method: must be full or hillaire, got march")
 
 
-def make_tables(
-    scene: Scene, settings: TableSettings | None = None, begin: Begin = ignore
-) -> TableSet:
+def make_tables(scene: Scene, settings: TableSettings | None = None) -> TableSet:
     """Make the tables of a sky.
 
     Parameters
@@ -116,8 +107,6 @@ def make_tables(
         The observer, the sun, the colour space and the scale.
     settings : TableSettings, optional
         What the tables are like.
-    begin : callable, optional
-        Called with the stage that begins.
 
     Raises
     ------
@@ -127,14 +116,12 @@ def make_tables(
     settings = settings or TableSettings()
     check_scene(scene)
     mappings, sizes = find_mappings(settings.parametrisation), settings.sizes
-    begin("atmosphere")
     atmosphere = scene.sky.atmosphere
     constants = mapping_constants(scene, settings, mappings)
 
     def where(name: str) -> tuple[Mapping, tuple[int, ...], dict[str, float]]:
         return mappings[name], sizes[name], constants
 
-    begin("tables")
     weights = scene.rgb_weights
     made = (
         transmittance_table(
@@ -160,13 +147,12 @@ def bake_tables(
     settings: TableSettings | None = None,
     *,
     attributes: Values[str, Attribute] | None = None,
-    begin: Begin = ignore,
 ) -> BakedTables:
     """Make the tables of a sky and write them, with what they are and code that looks them up.
 
     Parameters
     ----------
-    scene, settings, begin
+    scene, settings
         As of `make_tables`.
     folder : Path or str
         Where to; it is made if only the folder that holds it exists.
@@ -181,8 +167,7 @@ def bake_tables(
     settings, folder = settings or TableSettings(), Path(folder)
     check_scene(scene)
     with folder_of_tables(folder):
-        made = make_tables(scene, settings, begin)
-        begin("files")
+        made = make_tables(scene, settings)
         description = describe_tables(scene, settings, made.tables, file_names(), made.constants)
         encoding = scene.settings.encoding
         spec = MapSpec(
