@@ -17,7 +17,7 @@ from skybake.commands.options.night import (
     lst_option,
     night_from_options,
     night_needs,
-    stars_option,
+    night_options,
 )
 from skybake.commands.options.observer import (
     altitude_option,
@@ -48,7 +48,7 @@ from skybake.commands.printing.progress import map_progress
 @moment_options
 @sun_distance_option()
 @altitude_option()
-@stars_option
+@night_options
 @lst_option
 @clouds_options()
 @map_options

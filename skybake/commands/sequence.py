@@ -21,7 +21,7 @@ from skybake.commands.options.emit import (
     is_asked,
 )
 from skybake.commands.options.maps import map_needs, map_options, map_settings
-from skybake.commands.options.night import night_from_options, night_needs, stars_option
+from skybake.commands.options.night import night_from_options, night_needs, night_options
 from skybake.commands.options.observer import (
     altitude_option,
     sun_azimuth_option,
@@ -59,7 +59,7 @@ SOME_FAILED = 3
 @span_options
 @sun_distance_option()
 @altitude_option(is_range=True)
-@stars_option
+@night_options
 @clouds_options(is_range=True)
 @click.option(
     "--frames",

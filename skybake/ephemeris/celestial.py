@@ -16,6 +16,15 @@ _ARCSECOND = math.radians(1.0 / 3600.0)
 _ABERRATION = 20.49552 * _ARCSECOND
 _OBLIQUITY = math.radians(23.4392911)
 
+TO_ECLIPTIC = np.array(
+    [
+        [1.0, 0.0, 0.0],
+        [0.0, math.cos(_OBLIQUITY), math.sin(_OBLIQUITY)],
+        [0.0, -math.sin(_OBLIQUITY), math.cos(_OBLIQUITY)],
+    ]
+)
+"""Matrix from axes of J2000 to those of its ecliptic."""
+
 # Of J2000: IAU 2015 (Archinal et al. 2018) and Standish (1992), see docs/night.md.
 _MARS_POLE = math.radians(317.681), math.radians(52.887)
 _MARS_INCLINATION, _MARS_NODE = math.radians(1.850), math.radians(49.558)

@@ -21,6 +21,10 @@ BRIGHTEST_STAR = -1.44
 """Sirius, in V. [mag]"""
 
 
+BRIGHTEST = 100.0
+"""Largest factor of the light of the sky between stars."""
+
+
 @dataclass(frozen=True)
 class Night:
     """Which stars are shown, and how they stand.
@@ -35,12 +39,21 @@ class Night:
         Magnitude V up to which stars are shown, from `BRIGHTEST_STAR` to `FAINTEST_STAR`. [mag]
     is_refracted : bool
         Whether the air of Earth raises them.
+    is_shown : bool
+        False leaves out all lights of the night.
+    airglow : float
+        Of Earth, 1 at a mean solar flux; from 0 to `BRIGHTEST`.
+    zodiacal : float
+        Of sunlight that dust between the planets scatters, 1 as it is; from 0 to `BRIGHTEST`.
     """
 
     frame: CelestialFrame | None = None
     stars: str = "include"
     faintest_star: float = FAINTEST_STAR
     is_refracted: bool = False
+    is_shown: bool = True
+    airglow: float = 1.0
+    zodiacal: float = 1.0
 
     def __post_init__(self) -> None:
         """Refuse what cannot be shown."""
@@ -52,23 +65,49 @@ class Night:
                 f"{FAINTEST_STAR:g}, got {self.faintest_star:g}"
             )
 
+        for name in ("airglow", "zodiacal"):
+            if not 0.0 <= getattr(self, name) <= BRIGHTEST:
+                raise InputError(
+                    f"{name}: must be from 0 to {BRIGHTEST:g}, got {getattr(self, name):g}"
+                )
+
+    @property
+    def shows_glow(self) -> bool:
+        """Whether the sky between stars has a light of its own."""
+        return self.is_shown and self.frame is not None and self.stars != "only"
+
     @property
     def shows_stars(self) -> bool:
         """Whether there can be any."""
-        return self.frame is not None and self.stars != "exclude"
+        return self.is_shown and self.frame is not None and self.stars != "exclude"
 
     def recipe(self) -> dict[str, Any]:
         """All that decides the pixels, in human-readable units, fit for JSON."""
-        if self.frame is None or self.stars == "exclude":
+        if self.frame is None or not self.is_shown:
             return {}
         return {
             "stars": self.stars,
             "faintest_star_mag": self.faintest_star,
+            "airglow": self.airglow if self.frame.planet == "earth" else 0.0,
+            "zodiacal": self.zodiacal,
             "sidereal_time_deg": degrees(self.frame.sidereal_time),
             "vertical_latitude_deg": degrees(self.frame.latitude),
             "julian_year": self.frame.year,
             "stars_refracted": self.is_refracted,
         }
+
+
+def night_of(night: Night, frame: CelestialFrame, planet: str | None) -> Night:
+    """Return the night of a world by how the stars stand.
+
+    Airglow is Earth's, and zodiacal light is known between the sun and Mars alone.
+    """
+    return replace(
+        night,
+        frame=frame,
+        airglow=night.airglow if planet == "earth" else 0.0,
+        zodiacal=night.zodiacal if planet in {"earth", "mars"} else 0.0,
+    )
 
 
 def night_at(night: Night, moment: Moment) -> Night:

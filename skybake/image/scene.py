@@ -31,6 +31,7 @@ from skybake.sky.table import FoldedTable
 if TYPE_CHECKING:
     from skybake.clouds.cloudscape import Cloudscape
     from skybake.image.cloudy import CloudsOver
+    from skybake.image.night_glow import NightGlow
     from skybake.night.stars import Stars
 
 SURVEY_ROWS = 256
@@ -170,6 +171,15 @@ class Scene:
 
         return visible_stars(self)
 
+    @cached_property
+    def night_glow(self) -> NightGlow | None:
+        """The light of the sky between the stars, or None where none is seen."""
+        if not self.settings.night.shows_glow:
+            return None
+        from skybake.image.night_glow import visible_glow
+
+        return visible_glow(self)
+
     def light_clouds(self) -> None:
         """Solve for the light of clouds, which takes longest, before pixels show them."""
         if self.cloudscape is not None:
@@ -190,7 +200,11 @@ class Scene:
             If its luminance is negative beyond rounding, or not finite.
         """
         if self.cloudscape is None:
-            return self._surveyed[1]
+            if self.night_glow is None:
+                return self._surveyed[1]
+            zenith = row_zeniths(SURVEY_ROWS)[:, None]
+            azimuth = column_bearings(2 * SURVEY_ROWS)[None]
+            return self.evaluate(zenith, azimuth, math.pi / SURVEY_ROWS)
         rows = SURVEY_ROWS // 2
         coarse = self.evaluate(
             row_zeniths(rows)[:, None], column_bearings(2 * rows)[None], math.pi / rows
@@ -310,7 +324,9 @@ class Scene:
     def _sky_on_horizontal(self) -> Array:
         """Irradiance of the horizontal by the sky, in pixel values, shape (3,). [sr]"""
         # Without clouds both sides of the sun are alike.
-        return horizontal_irradiance(self.evaluate, is_even=self.cloudscape is None)
+        return horizontal_irradiance(
+            self.evaluate, is_even=self.cloudscape is None and self.night_glow is None
+        )
 
     def evaluate(self, zenith: Array, azimuth: Array, footprint: Array | float) -> np.ndarray:
         """Pixel values of the sky, see `fill_directions`, shape (row, column, 3).
@@ -332,6 +348,8 @@ class Scene:
         # The least value is found 50 times as fast as luminances are.
         if pixels.min(initial=0.0) < 0.0 or weights.min() < 0.0:
             pixels[pixels @ weights < 0.0] = 0.0
+        if self.night_glow is not None:
+            self.night_glow.add(zenith, azimuth, footprint, pixels)
         return pixels
 
     def clouds_over(self, cloudscape: Cloudscape) -> CloudsOver:

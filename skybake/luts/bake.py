@@ -79,8 +79,8 @@ def check_scene(scene: Scene) -> None:
     Raises
     ------
     InputError
-        If the world has no air or has clouds, the observer is above the air, or the method has
-        single scattering alone.
+        If the world has no air or has clouds, the observer is above the air, lights of the night
+        are to be shown, or the method has single scattering alone.
     """
     medium, altitude = scene.sky.medium, scene.settings.view.altitude
     height = medium.r_top - medium.r_bottom
@@ -94,6 +94,8 @@ def check_scene(scene: Scene) -> None:
             f"altitude: must be below the top of the atmosphere at {height:g} km, got "
             f"{altitude:g} km"
         )
+    if scene.settings.night.shows_glow or scene.settings.night.shows_stars:
+        raise InputError("night: must not be shown in tables, which are symmetric about the sun")
     if scene.settings.lighting.method == "march":
         raise InputError("method: must be full or hillaire, got march")
 

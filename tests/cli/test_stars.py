@@ -53,6 +53,16 @@ def test_stars_can_be_left_out(folder):
     assert 0.0 < few < 4e-5
 
 
+def test_the_glow_of_the_night_is_scaled_or_left_out(folder):
+    whole, doubled, off = (
+        render(*NIGHT, *options, "-o", "a.exr")["sky_illuminance_lux"]
+        for options in ((), ("--airglow", "2", "--zodiacal", "2"), ("--night", "off"))
+    )
+    assert 0.6e-3 < whole < 1.4e-3
+    assert 1.6 < doubled / whole < 2.0
+    assert off < 1e-8
+
+
 def test_a_sky_of_stars_alone_is_dark_between_them(folder):
     render(*NIGHT, "--stars", "only", "--size", "256x128", "-o", "a.exr")
     pixels = read_image(Path("a.exr"))[0]
@@ -91,6 +101,11 @@ def test_without_stars_nothing_of_them_is_imported(folder, arguments):
         ),
         (("--stars", "9", "--lst", "5h", "--lat", "3"), "--stars: magnitude must be from -1.44"),
         (("--lst", "5h"), "--lst: needs --lat"),
+        (("--night", "off"), "--night: needs --time or --lst"),
+        (("--airglow", "2"), "--airglow: needs --time or --lst"),
+        ((*NIGHT, "--airglow", "-1"), "--airglow: must be from 0 to 100, got -1"),
+        ((*NIGHT, "--zodiacal", "much"), "'--zodiacal': must be a number such as 1.5, got 'much'"),
+        ((*NIGHT, "--night", "off", "--stars", "only"), "--stars: cannot be combined with --night"),
         (("--lst", "25h", "--lat", "3"), "'--lst': must be from 0h to 24h, got 25h"),
         (("--lst", "soon", "--lat", "3"), "'--lst': must be an angle such as 5deg"),
         ((*NIGHT, "--lst", "5h"), "--lst: cannot be combined with --time"),

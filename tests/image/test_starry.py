@@ -28,7 +28,7 @@ def scene(planet=EARTH, projection=None, *, frame=WINTER, night=None, **options)
 
 
 def test_a_night_holds_the_light_of_its_stars():
-    lit = scene()
+    lit = scene(night=Night(WINTER, stars="only"))
     pixels = image_of_scene(lit).pixels.astype(float)
     chart = lit.settings.view.projection.canvases()[0].parts[0].chart
     luminance = pixels @ lit.luminance
@@ -82,6 +82,26 @@ def test_from_space_stars_stand_beside_the_sun():
     assert scene(sun_elevation=0.5, altitude=400.0).stars is not None
 
 
+def test_the_sky_between_stars_is_not_black():
+    night, black = (scene(night=Night(WINTER, is_shown=each)) for each in (True, False))
+    lit, unlit = (image_of_scene(one).pixels[:60] @ night.luminance for one in (night, black))
+    assert 1.2e-4 < lit.min() < 3e-4
+    assert unlit.max() < 1e-6
+    # It lights the ground as well.
+    assert 0.6e-3 < night.sky_illuminance() < 1.4e-3
+
+
+def test_the_glow_of_the_night_adds_to_twilight():
+    def pixels(elevation, night):
+        one = scene(sun_elevation=math.radians(elevation), night=night)
+        return image_of_scene(one).pixels
+
+    # That of airglow and stars, which the sun's place does not change.
+    night = Night(WINTER, stars="exclude", zodiacal=0.0)
+    glow = pixels(-11.0, night) - pixels(-11.0, Night())
+    np.testing.assert_allclose(glow, pixels(-60.0, night), rtol=1e-3, atol=1e-9)
+
+
 def test_a_map_that_is_turned_has_the_stars_turned():
     plain, turned = (
         image_of_scene(scene(rotation=math.radians(each))).pixels for each in (0.0, 90.0)
@@ -108,7 +128,7 @@ def test_only_stars_are_the_stars_of_the_map():
         image_of_scene(scene(night=Night(WINTER, stars=each))).pixels
         for each in ("include", "only")
     )
-    dark = image_of_scene(scene(night=Night())).pixels
+    dark = image_of_scene(scene(night=Night(WINTER, stars="exclude"))).pixels
     np.testing.assert_allclose(only, whole - dark, atol=1e-9)
 
 
@@ -118,6 +138,13 @@ def test_a_world_of_three_wavelengths_has_stars_of_the_same_light():
     ratio = star_illuminance(paper, paper.stars) / star_illuminance(earth, earth.stars)
     assert ratio == pytest.approx(1.0, abs=0.1)
     assert (star_xyz(paper, paper.stars)[:, 1] > 0.0).all()
+
+
+@pytest.mark.parametrize("name", ["airglow", "zodiacal"])
+@pytest.mark.parametrize("scale", [-0.1, 101.0, math.nan])
+def test_a_glow_beyond_bounds_is_refused(name, scale):
+    with pytest.raises(InputError, match=f"{name}: must be from 0 to 100"):
+        Night(**{name: scale})
 
 
 @pytest.mark.parametrize("magnitude", [-2.0, 7.0, math.nan])

@@ -1,4 +1,4 @@
-"""The options of stars: whether they are in the map, and how they stand without a time."""
+"""The options of the night: its lights, and how the stars stand without a time."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from skybake.commands.options import values
-from skybake.commands.options.rules import Needs
+from skybake.commands.options.rules import Needs, options_together
 from skybake.errors import InputError
 
 if TYPE_CHECKING:
@@ -24,6 +24,32 @@ stars_option = click.option(
     "stand is known with a time, or with --lst.",
 )
 
+night_options = options_together(
+    click.option(
+        "--night",
+        type=click.Choice(("auto", "off")),
+        show_default="auto",
+        help="Whether a map with a time has the lights of the night: stars, Milky Way, zodiacal "
+        "light and, on Earth, airglow.",
+    ),
+    stars_option,
+    click.option(
+        "--airglow",
+        metavar="SCALE",
+        type=values.scale,
+        show_default="1",
+        help="Airglow of Earth over that at a mean solar flux; 0.75 at a low one, 1.25 at a high "
+        "one.",
+    ),
+    click.option(
+        "--zodiacal",
+        metavar="SCALE",
+        type=values.scale,
+        show_default="1",
+        help="Zodiacal light over what it is.",
+    ),
+)
+
 lst_option = click.option(
     "--lst",
     "sidereal_time",
@@ -37,10 +63,15 @@ lst_option = click.option(
 def night_needs(options: Mapping[str, Any], *, is_timed: bool, time: str) -> Needs:
     """Return what the options of stars need: `time`, the option or options of a time."""
     sidereal = options.get("sidereal_time")
+    is_known = is_timed or sidereal is not None
+    needs = f"needs {time}" + (" or --lst" if "sidereal_time" in options else "")
+    is_off = options["night"] == "off"
+    lights = ("stars", "airglow", "zodiacal")
     return {
-        "stars": (
-            is_timed or sidereal is not None,
-            f"needs {time}" + (" or --lst" if "sidereal_time" in options else ""),
+        "night": (is_known, needs),
+        **dict.fromkeys(
+            lights,
+            (is_known and not is_off, "cannot be combined with --night off" if is_off else needs),
         ),
         "sidereal_time": (
             not is_timed and options["latitude"] is not None,
@@ -66,14 +97,16 @@ def night_from_options(options: Mapping[str, Any], moment: Moment | None = None)
     PresetError
         If the preset cannot be read.
     """
-    from skybake.image.night import Night, night_at
+    from skybake.image.night import Night, night_at, night_of
 
+    shown: dict[str, Any] = {
+        name: options[name] for name in ("airglow", "zodiacal") if options[name] is not None
+    }
     wanted = options["stars"]
-    shown = {} if wanted is None else {"stars": wanted}
-    if isinstance(wanted, float):
-        shown = {"faintest_star": wanted}
+    if wanted is not None:
+        shown["faintest_star" if isinstance(wanted, float) else "stars"] = wanted
     try:
-        night = Night(**shown)
+        night = Night(is_shown=options["night"] != "off", **shown)
     except InputError as error:
         raise click.UsageError(f"--{error}") from error
     if moment is not None:
@@ -81,12 +114,11 @@ def night_from_options(options: Mapping[str, Any], moment: Moment | None = None)
     if options.get("sidereal_time") is None:
         return night
 
-    from dataclasses import replace
-
     from skybake.ephemeris.celestial import CelestialFrame
     from skybake.preset import planet_name
 
+    planet = planet_name(options["preset"])
     # Elsewhere than on Mars the stars stand as over Earth.
-    planet = "mars" if planet_name(options["preset"]) == "mars" else "earth"
-    frame = CelestialFrame(planet, options["sidereal_time"], options["latitude"])
-    return replace(night, frame=frame)
+    over = "mars" if planet == "mars" else "earth"
+    frame = CelestialFrame(over, options["sidereal_time"], options["latitude"])
+    return night_of(night, frame, planet)

@@ -94,6 +94,14 @@ def stars(text: str) -> float | str:
         ) from None
 
 
+def scale(text: str) -> float:
+    """Read a factor, whose range settings check."""
+    try:
+        return float(text)
+    except ValueError:
+        raise click.BadParameter(f"must be a number such as 1.5, got {text!r}") from None
+
+
 def solar_longitude(text: str) -> float:
     """Read an angle from 0deg to 360deg. [rad]"""
     angle = _parse(text, parse_angle)
