@@ -5,6 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from skybake.ephemeris.celestial import CelestialFrame
+from skybake.errors import InputError
+from skybake.image.night import Night
 from skybake.luts.aerial_perspective import air_segments, screen_directions
 from skybake.luts.lookup import look_up
 from skybake.luts.settings import TableSettings
@@ -216,3 +219,11 @@ def test_a_march_with_tables_and_constituents_of_the_files_gives_the_sky(tmp_pat
         found = light * vector(about, "SUN_ILLUMINANCE")
         expected = scene.sky.radiance(view) / scene.sky.irradiance @ scene.rgb_weights
         np.testing.assert_allclose(found, expected, rtol=0.01)
+
+
+def test_a_scene_with_lights_of_the_night_is_refused():
+    """They are not symmetric about the sun, as a view of the sky is."""
+    frame = CelestialFrame("earth", 0.7, 0.5, 2026.0)
+    scene = scene_of("earth", night=Night(frame))
+    with pytest.raises(InputError, match="night: must not be shown in tables"):
+        tables_of(scene)
