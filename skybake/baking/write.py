@@ -14,7 +14,12 @@ from skybake.baking.pictures import open_pictures, write_pictures
 from skybake.baking.pixel_type import PixelType, fitting_pixel, value_range
 from skybake.formats.spec import Attribute, MapSpec
 from skybake.formats.whole_files import WholeFiles
-from skybake.image.light import Light, attributes_from_light, light_of_scene
+from skybake.image.light import (
+    Light,
+    attributes_from_light,
+    eclipse_attributes,
+    light_of_scene,
+)
 from skybake.image.picture_settings import PictureSettings
 from skybake.image.raster import Raster
 from skybake.image.recipe import recipe_attributes
@@ -186,6 +191,7 @@ def bake_scene(
         **attributes_from_light(light),
         **({} if from_below is None else dict(zip(FROM_BELOW, from_below, strict=True))),
         **({} if by_stars is None else {STAR_ILLUMINANCE: by_stars}),
+        **eclipse_attributes(scene),
         **recipe_attributes(planet, settings),
         **(attributes or {}),
     }

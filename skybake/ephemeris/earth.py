@@ -48,7 +48,7 @@ def sun_position(time: datetime, place: Place) -> tuple[float, float]:
 
 def sun_distance(time: datetime) -> float:
     """Return how far the sun is from the centre of Earth, by libastro's VSOP87. [au]"""
-    sun = ephem.Sun(_days(time))
+    sun = ephem.Sun(ephem_days(time))
     return float(sun.earth_distance)
 
 
@@ -99,9 +99,10 @@ def _observe(time: datetime, place: Place) -> tuple[ephem.Sun, ephem.Observer]:
     observer = ephem.Observer()
     observer.pressure = 0.0
     observer.lat, observer.lon = place.latitude, place.longitude
-    observer.date = _days(time)
+    observer.date = ephem_days(time)
     return ephem.Sun(observer), observer
 
 
-def _days(time: datetime) -> float:
+def ephem_days(time: datetime) -> float:
+    """Return a time as PyEPHEM counts it. [d]"""
     return (time - _DUBLIN_EPOCH) / timedelta(days=1)

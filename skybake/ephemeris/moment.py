@@ -13,6 +13,7 @@ from skybake.ephemeris.earth import sun_distance, sun_position
 from skybake.ephemeris.horizon import Horizon
 from skybake.ephemeris.local_clock import local_text, utc_text
 from skybake.ephemeris.mars import distance_in_season, mars_time, sun_in_season
+from skybake.ephemeris.moon import Moon
 from skybake.ephemeris.place import Place
 from skybake.ephemeris.season import DAY
 from skybake.ephemeris.sidereal import frame_at, frame_in_season
@@ -44,6 +45,8 @@ class Moment:
         From the planet then. [au]
     attributes : mapping of str to str or float
         Time and place as files state them, see docs/formats.md.
+    moon : Moon or None
+        The moon that is nearest to the sun; None in a season of Mars, which has no date.
     celestial : CelestialFrame or None
         How the stars stand.
     """
@@ -55,6 +58,7 @@ class Moment:
     sun_azimuth: float
     sun_distance: float
     attributes: Mapping[str, str | float]
+    moon: Moon | None = None
     celestial: CelestialFrame | None = None
 
     @property
@@ -208,15 +212,32 @@ def _at(time: datetime, zone: tzinfo | None, place: Place, horizon: Horizon) -> 
         sun = sun_in_season(now.solar_longitude, hour_angle, place.latitude)
         attributes["skybake:solarLongitude"] = degrees(now.solar_longitude)
         attributes["skybake:trueSolarTime"] = _clock_text((hour_angle / (2 * math.pi) + 0.5) * DAY)
-        stars = frame_at(time, place)
-        return Moment(time, label, place, *sun, now.sun_distance, attributes, stars)
+        return Moment(
+            time,
+            label,
+            place,
+            *sun,
+            now.sun_distance,
+            attributes,
+            _moon(time, place, horizon, *sun),
+            frame_at(time, place),
+        )
     elevation, azimuth = sun_position(time, place)
     if horizon.refraction:
         lift = horizon.lift(elevation)
         elevation += lift
         attributes["skybake:refraction"] = degrees(lift)
+    sun = elevation, azimuth
+    moon = _moon(time, place, horizon, *sun)
     distance, stars = sun_distance(time), frame_at(time, place)
-    return Moment(time, label, place, elevation, azimuth, distance, attributes, stars)
+    return Moment(time, label, place, *sun, distance, attributes, moon, stars)
+
+
+def _moon(time: datetime, place: Place, horizon: Horizon, elevation: float, azimuth: float) -> Moon:
+    # Kept out of what asks for no moment, since it needs arrays.
+    from skybake.ephemeris.moons import moon_before_sun
+
+    return moon_before_sun(time, place, horizon.altitude, azimuth, elevation)
 
 
 def _in_season(season: float, seconds: float, place: Place) -> Moment:
@@ -228,7 +249,8 @@ def _in_season(season: float, seconds: float, place: Place) -> Moment:
     attributes["skybake:trueSolarTime"] = text = _clock_text(seconds)
     label = f"Ls {degrees(season):g} {text}"
     stars = frame_in_season(season, hour_angle, place.latitude)
-    return Moment(None, label, place, *sun, distance_in_season(season), attributes, stars)
+    distance = distance_in_season(season)
+    return Moment(None, label, place, *sun, distance, attributes, celestial=stars)
 
 
 def _attributes(time: datetime | None, place: Place) -> dict[str, str | float]:

@@ -68,6 +68,18 @@ def attributes_from_light(light: Light) -> dict[str, Attribute]:
     return {name: getattr(light, field) for field, name in _ATTRIBUTES.items()}
 
 
+def eclipse_attributes(scene: Scene) -> dict[str, Attribute]:
+    """Return the attributes of a map's files that tell of an eclipse, none without one."""
+    eclipse = scene.sky.eclipse
+    if eclipse is None:
+        return {}
+    return {
+        "skybake:eclipse": eclipse.phase.name,
+        "skybake:eclipseMagnitude": eclipse.phase.magnitude,
+        "skybake:eclipseObscuration": eclipse.phase.obscuration,
+    }
+
+
 def light_from_attributes(attributes: Mapping[str, Any]) -> Light:
     """Return the light that the attributes of a map's file state.
 

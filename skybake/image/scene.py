@@ -31,6 +31,7 @@ from skybake.sky.table import FoldedTable
 if TYPE_CHECKING:
     from skybake.clouds.cloudscape import Cloudscape
     from skybake.image.cloudy import CloudsOver
+    from skybake.image.eclipsed import LeftShare
     from skybake.image.night_glow import NightGlow
     from skybake.night.stars import Stars
 
@@ -48,13 +49,6 @@ UNDERSHOOT = 0.01
 """Of the brightest luminance: the most that cubics may be below 0; it is 0 then."""
 
 CELLS_AT_ONCE = 32768
-
-_LAYERS = {
-    "include": ("sky", "sun"),
-    "exclude": ("sky",),
-    "only": ("sun",),
-    "separate": ("sky", "sun"),
-}
 
 
 class Scene:
@@ -89,6 +83,7 @@ class Scene:
             settings.view.altitude,
             sun_azimuth=settings.lighting.sun_azimuth,
             sun_distance=settings.lighting.sun_distance,
+            moon=settings.lighting.moon,
             method=settings.lighting.method,
             workers=workers,
         )
@@ -270,7 +265,8 @@ class Scene:
         """Layers that a map of the scene holds."""
         if self.settings.night.stars == "only":
             return ("stars",)
-        names = _LAYERS[self.settings.lighting.sun_disc]
+        disc = self.settings.lighting.sun_disc
+        names = ("sun",) if disc == "only" else ("sky",) if disc == "exclude" else ("sky", "sun")
         return (*names, "stars") if "sky" in names and self.stars is not None else names
 
     @property
@@ -323,10 +319,9 @@ class Scene:
     @cached_property
     def _sky_on_horizontal(self) -> Array:
         """Irradiance of the horizontal by the sky, in pixel values, shape (3,). [sr]"""
-        # Without clouds both sides of the sun are alike.
-        return horizontal_irradiance(
-            self.evaluate, is_even=self.cloudscape is None and self.night_glow is None
-        )
+        # Without clouds, an eclipse or a night both sides of the sun are alike.
+        is_even = self.cloudscape is None and self.sky.eclipse is None and self.night_glow is None
+        return horizontal_irradiance(self.evaluate, is_even=is_even)
 
     def evaluate(self, zenith: Array, azimuth: Array, footprint: Array | float) -> np.ndarray:
         """Pixel values of the sky, see `fill_directions`, shape (row, column, 3).
@@ -375,4 +370,15 @@ class Scene:
             fill_directions(*pixels, first, last, scratch, out[first:last])
 
         self.workers.run_rows(rows, work, chunk=128 // self.workers.shares(8))
+        if self._left_share is not None:
+            self._left_share.dim(zenith, azimuth, out, self.workers)
         return out
+
+    @cached_property
+    def _left_share(self) -> LeftShare | None:
+        """What an eclipse leaves of the light in each direction, if there is one."""
+        if self.sky.eclipse is None:
+            return None
+        from skybake.image.eclipsed import left_share
+
+        return left_share(self.sky.eclipse, self.xyz_weights, self.settings.encoding.space)

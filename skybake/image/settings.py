@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from skybake.colour.exposure import luminance_from_ev, luminance_from_units
 from skybake.colour.space import ColourSpace, find_colour_space
@@ -15,6 +15,9 @@ from skybake.image.night import Night
 from skybake.projection import Equirect, Projection, find_projection
 from skybake.sky.sky import METHODS
 from skybake.units import degrees, metres
+
+if TYPE_CHECKING:
+    from skybake.ephemeris.moon import Moon
 
 SUN_DISCS = ("include", "exclude", "only", "separate")
 BELOW_HORIZON = ("ground", "extend", "black")
@@ -80,6 +83,8 @@ class Lighting:
         Factor of the disc's light, greater than 0; the sky keeps its own.
     method : {"full", "hillaire", "march"}
         How light is transported, see `skybake.sky.sky.Sky`.
+    moon : Moon or None
+        What may be in front of the sun.
     """
 
     sun_elevation: float = math.radians(30.0)
@@ -90,6 +95,7 @@ class Lighting:
     sun_soft: bool = False
     sun_strength: float = 1.0
     method: str = "full"
+    moon: Moon | None = None
 
     def __post_init__(self) -> None:
         """Refuse what cannot be baked."""
@@ -251,6 +257,7 @@ class MapSettings:
             **({"mips": True} if encoding.mips else {}),
             **({"layers": True} if encoding.layers else {}),
             **({} if encoding.target is None else {"target": encoding.target}),
+            **({} if lighting.moon is None else lighting.moon.recipe()),
             **(self.clouds.recipe() if has_clouds else {}),
             **self.night.recipe(),
         }
