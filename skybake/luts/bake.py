@@ -80,7 +80,7 @@ def check_scene(scene: Scene) -> None:
     ------
     InputError
         If the world has no air or has clouds, the observer is above the air, lights of the night
-        are to be shown, or the method has single scattering alone.
+        are to be shown, a moon eclipses the sun, or the method has single scattering alone.
     """
     medium, altitude = scene.sky.medium, scene.settings.view.altitude
     height = medium.r_top - medium.r_bottom
@@ -96,6 +96,8 @@ def check_scene(scene: Scene) -> None:
         )
     if scene.settings.night.shows_glow or scene.settings.night.shows_stars:
         raise InputError("night: must not be shown in tables, which are symmetric about the sun")
+    if scene.sky.eclipse is not None:
+        raise InputError("moon: must not eclipse the sun in tables, which are symmetric about it")
     if scene.settings.lighting.method == "march":
         raise InputError("method: must be full or hillaire, got march")
 

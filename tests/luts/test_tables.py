@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from skybake.ephemeris.celestial import CelestialFrame
+from skybake.ephemeris.moon import Moon
 from skybake.errors import InputError
 from skybake.image.night import Night
 from skybake.luts.aerial_perspective import air_segments, screen_directions
@@ -221,9 +222,11 @@ def test_a_march_with_tables_and_constituents_of_the_files_gives_the_sky(tmp_pat
         np.testing.assert_allclose(found, expected, rtol=0.01)
 
 
-def test_a_scene_with_lights_of_the_night_is_refused():
-    """They are not symmetric about the sun, as a view of the sky is."""
+def test_what_is_not_symmetric_about_the_sun_is_refused():
     frame = CelestialFrame("earth", 0.7, 0.5, 2026.0)
     scene = scene_of("earth", night=Night(frame))
     with pytest.raises(InputError, match="night: must not be shown in tables"):
         tables_of(scene)
+    moon = Moon(math.radians(215.0), math.radians(30.0))
+    with pytest.raises(InputError, match="moon: must not eclipse the sun in tables"):
+        tables_of(scene_of("earth", sun=30.0, moon=moon))
