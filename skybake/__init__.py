@@ -39,6 +39,8 @@ if TYPE_CHECKING:
     from skybake.image.settings import Clouds, Encoding, Lighting, MapSettings, View, map_settings
     from skybake.image.target import TARGETS, Target, TargetAxes, TargetReason, find_target
     from skybake.jit.workers import Workers
+    from skybake.luts.bake import BakedTables, bake_tables
+    from skybake.luts.settings import TableSettings
     from skybake.optics.changes import PresetChanges
     from skybake.pipeline import Pipeline, Sky
     from skybake.preset import (
@@ -94,6 +96,7 @@ __all__ = [
     "Angular",
     "ArgumentError",
     "Baked",
+    "BakedTables",
     "CancelledError",
     "CelestialFrame",
     "CloudLayer",
@@ -149,6 +152,7 @@ __all__ = [
     "SkybakeError",
     "Spectrum",
     "Star",
+    "TableSettings",
     "TabulatedPhase",
     "TabulatedProfile",
     "Target",
@@ -163,6 +167,7 @@ __all__ = [
     "bake",
     "bake_orientation_chart",
     "bake_sequence",
+    "bake_tables",
     "convert",
     "default_manifest",
     "find_place",
@@ -182,6 +187,7 @@ _HOMES = {
     "Angular": "skybake.projection",
     "ArgumentError": "skybake.errors",
     "Baked": "skybake.baking",
+    "BakedTables": "skybake.luts.bake",
     "CancelledError": "skybake.errors",
     "CelestialFrame": "skybake.ephemeris.celestial",
     "CloudLayer": "skybake.preset",
@@ -238,6 +244,7 @@ _HOMES = {
     "SkybakeError": "skybake.errors",
     "Spectrum": "skybake.preset",
     "Star": "skybake.preset",
+    "TableSettings": "skybake.luts.settings",
     "TabulatedPhase": "skybake.preset",
     "TabulatedProfile": "skybake.preset",
     "Target": "skybake.image.target",
@@ -252,6 +259,7 @@ _HOMES = {
     "bake": "skybake.baking",
     "bake_orientation_chart": "skybake.baking.orientation_chart",
     "bake_sequence": "skybake.sequence.bake",
+    "bake_tables": "skybake.luts.bake",
     "convert": "skybake.baking.convert",
     "default_manifest": "skybake.sequence.products",
     "find_place": "skybake.ephemeris.place",

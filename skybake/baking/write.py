@@ -15,10 +15,12 @@ from skybake.baking.pixel_type import PixelType, fitting_pixel, value_range
 from skybake.formats.spec import Attribute, MapSpec
 from skybake.formats.whole_files import WholeFiles
 from skybake.image.light import (
+    STAR_ILLUMINANCE,
     Light,
     attributes_from_light,
     eclipse_attributes,
     light_of_scene,
+    star_attributes,
 )
 from skybake.image.parts import part_names
 from skybake.image.picture_settings import PictureSettings
@@ -31,9 +33,6 @@ from skybake.sidecar.map_light import MapLight, map_light
 
 FROM_BELOW = ("skybake:illuminanceFromBelow", "skybake:groundIlluminanceFromBelow")
 """Attributes of maps that do not show the ground. [lx]"""
-
-STAR_ILLUMINANCE = "skybake:starIlluminance"
-"""Attribute of maps with stars: of the horizontal by them. [lx]"""
 
 Progress = Callable[[float], None]
 
@@ -186,12 +185,12 @@ def bake_scene(
         scene.light_clouds()
     begin("pixels")
     light = light_of_scene(scene)
-    from_below, by_stars = _from_below(scene), _star_illuminance(scene)
+    from_below, starlight = _from_below(scene), star_attributes(scene)
     described = None if light_files is None else map_light(scene, light)
     attributes = {
         **attributes_from_light(light),
         **({} if from_below is None else dict(zip(FROM_BELOW, from_below, strict=True))),
-        **({} if by_stars is None else {STAR_ILLUMINANCE: by_stars}),
+        **starlight,
         **eclipse_attributes(scene),
         **recipe_attributes(planet, settings),
         **(attributes or {}),
@@ -259,7 +258,7 @@ def bake_scene(
         warnings=tuple(warnings),
         map_light=described,
         light_files=tuple(light_files or ()),
-        star_illuminance=by_stars,
+        star_illuminance=starlight.get(STAR_ILLUMINANCE),
     )
 
 
@@ -269,14 +268,6 @@ def _from_below(scene: Scene) -> tuple[float, float] | None:
     from skybake.image.below_horizon import light_from_below
 
     return light_from_below(scene)
-
-
-def _star_illuminance(scene: Scene) -> float | None:
-    if scene.stars is None:
-        return None
-    from skybake.image.starry import star_illuminance
-
-    return star_illuminance(scene, scene.stars)
 
 
 def _ignore(_: str) -> None:

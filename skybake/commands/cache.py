@@ -106,6 +106,7 @@ def warm(presets: tuple[str, ...], for_all_users: bool, quiet: bool) -> None:
 
     from skybake.aerial.warm import compile_air
     from skybake.baking.warm import compile_all, solve
+    from skybake.luts.warm import compile_kernels
     from skybake.preset import load_preset
 
     # An error in the last one is to be reported before the first is solved.
@@ -115,6 +116,7 @@ def warm(presets: tuple[str, ...], for_all_users: bool, quiet: bool) -> None:
     solve(presets, say)
     compile_air()
     compile_all()
+    compile_kernels()
     if for_all_users:
         share_cache()
     if not quiet:

@@ -8,7 +8,8 @@ from skybake.colour.exposure import auto_ev
 from skybake.colour.white_balance import Array, automatic_white, white_from_kelvin
 from skybake.image.picture_settings import PictureSettings, white_balance_of
 from skybake.image.raster import Raster, sky_pixels
-from skybake.image.scene import SURVEY_ROWS, Scene
+from skybake.image.scene import Scene
+from skybake.image.survey import SURVEY_ROWS
 from skybake.projection import Projection
 
 DARKEST_NIGHT = -10.5
