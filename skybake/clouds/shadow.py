@@ -9,7 +9,7 @@ from skybake.clouds.light import sun_share
 from skybake.jit.kernel import kernel
 
 SAMPLES = 6
-"""Places in each stretch of a ray at which the sun is looked for."""
+"""Places in each stretch of a ray at which the sun is looked for, at most; a voxel each will do."""
 
 
 @kernel
@@ -42,11 +42,12 @@ def dim_visibility(
         direction = directions[n]
         for q in range(stretches):
             begin, end = distances[n, q], distances[n, q + 1]
+            samples = min(max(math.ceil((end - begin) / light.spacing[2]), 1), SAMPLES)
             total = 0.0
-            for i in range(SAMPLES):
-                s = begin + (end - begin) * (i + 0.5) / SAMPLES
+            for i in range(samples):
+                s = begin + (end - begin) * (i + 0.5) / samples
                 total += _visible(field, light, leaving, radius, altitude, direction, s, sun)
-            out[n, q] *= total / SAMPLES
+            out[n, q] *= total / samples
         s = distances[n, stretches] * (1.0 - 1e-9)
         out[n, stretches] *= _visible(field, light, leaving, radius, altitude, direction, s, sun)
 
