@@ -89,10 +89,7 @@ def follow(
             return radiance
         if order >= first:
             light = _sunlight(air, each, total, h, mu_s, direction, sun, at_ground)
-            if light > 0.0:
-                r = air.r_bottom + h
-                light *= uncovered_share(occultation, r * up[0], r * up[1], r * up[2] - observer)
-            radiance += weight * light
+            radiance += weight * _uncovered(light, occultation, air.r_bottom + h, up, observer)
         if order >= last:
             return radiance
         promise = weight * look_up(guide, guide.ambient, h, mu_s)
@@ -119,6 +116,14 @@ def follow(
         )
         u = uniform(state)
         order += 1
+
+
+@kernel
+def _uncovered(light, occultation, r, up, observer):
+    """Light of a vertex in the direction `up` from the planet's centre that passes the moon."""
+    if light <= 0.0:
+        return 0.0
+    return light * uncovered_share(occultation, r * up[0], r * up[1], r * up[2] - observer)
 
 
 @kernel
