@@ -253,9 +253,8 @@ class Scene:
         for first in range(0, len(flux), CELLS_AT_ONCE):
             part = slice(first, first + CELLS_AT_ONCE)
             bearing = cells.azimuth[part] + self.settings.view.rotation
-            light = self.sun.radiance_per_irradiance(
-                cells.zenith[part], cells.distance[part], bearing
-            )
+            where = cells.zenith[part], cells.distance[part], bearing
+            light = self.sun.radiance_per_irradiance(*where)
             flux[part] = (light @ self.rgb_weights) * cells.solid_angle[part, None]
             if self.cloudscape is not None:
                 flux[part] *= self.cloudscape.transmittance(cells.zenith[part], bearing)[:, None]
