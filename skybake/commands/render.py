@@ -13,6 +13,12 @@ from skybake.commands.memory import check_memory
 from skybake.commands.options import choices, values
 from skybake.commands.options.clouds import check_clouds, clouds_options
 from skybake.commands.options.maps import map_needs, map_options, map_settings
+from skybake.commands.options.night import (
+    lst_option,
+    night_from_options,
+    night_needs,
+    night_options,
+)
 from skybake.commands.options.observer import (
     altitude_option,
     moon_from_options,
@@ -46,6 +52,8 @@ from skybake.commands.printing.progress import map_progress
 @sun_distance_option()
 @moon_options("--time")
 @altitude_option()
+@night_options
+@lst_option
 @clouds_options()
 @map_options
 @click.option(
@@ -94,6 +102,7 @@ def render(**options: Any) -> None:
         moment_needs(context),
         sun_distance_needs(options, is_timed=is_timed, time="--time"),
         moon_needs(options, is_timed=is_timed, time="--time"),
+        night_needs(options, is_timed=is_timed, time="--time"),
         map_needs(options),
         preview_needs(options),
     )
@@ -105,6 +114,7 @@ def render(**options: Any) -> None:
     settings = map_settings(
         options,
         **positions(options, moment),
+        night=night_from_options(options, moment),
     )
 
     from skybake.baking import bake, default_path, late_kernels

@@ -21,6 +21,7 @@ from skybake.commands.options.emit import (
     is_asked,
 )
 from skybake.commands.options.maps import map_needs, map_options, map_settings
+from skybake.commands.options.night import night_from_options, night_needs, night_options
 from skybake.commands.options.observer import (
     altitude_option,
     moon_needs,
@@ -61,6 +62,7 @@ SOME_FAILED = 3
 @sun_distance_option()
 @moon_options("--from and --to")
 @altitude_option(is_range=True)
+@night_options
 @clouds_options(is_range=True)
 @click.option(
     "--frames",
@@ -156,6 +158,7 @@ def sequence(**options: Any) -> None:
         span_needs(context),
         sun_distance_needs(options, is_timed=is_timed, time=times),
         moon_needs(options, is_timed=is_timed, time=times),
+        night_needs(options, is_timed=is_timed, time=times),
         map_needs(options),
         preview_needs(options),
         emit_needs(options),
@@ -217,7 +220,12 @@ def _plan_from_options(context: click.Context) -> Plan:
     """
     options = context.params
     times = span_from_options(context)
-    settings = map_settings(options, clouds_quality=options["clouds_quality"], moon=options["moon"])
+    settings = map_settings(
+        options,
+        clouds_quality=options["clouds_quality"],
+        moon=options["moon"],
+        night=night_from_options(options),
+    )
     changes = changes_from_options(context)
 
     from skybake.sequence.planning import plan_sequence

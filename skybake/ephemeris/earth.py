@@ -58,6 +58,12 @@ def hour_angle(time: datetime, place: Place) -> float:
     return math.remainder(observer.sidereal_time() - sun.ra, 2.0 * math.pi)
 
 
+def sidereal_time(time: datetime, place: Place) -> float:
+    """Return the apparent right ascension of what culminates, 0 to 2 pi. [rad]"""
+    _, observer = _observe(time, place)
+    return float(observer.sidereal_time())
+
+
 def refraction(elevation: float) -> float:
     """Return by how much refraction at sea level raises the sun.
 

@@ -24,6 +24,9 @@ _DAY = timedelta(days=1)
 _TURN = 2.0 * math.pi
 
 _SIN_OBLIQUITY = 0.42565
+OBLIQUITY = math.asin(_SIN_OBLIQUITY)
+"""Of the equator to the orbit. [rad]"""
+
 EQUATORIAL_RADIUS, POLAR_RADIUS = 3396.19, 3376.20
 """Of the ellipsoid of IAU 2000 (Seidelmann et al. 2002). [km]"""
 

@@ -15,8 +15,9 @@ from skybake.ephemeris.moon import Moon
 from skybake.errors import InputError, UnsolvableError
 from skybake.image.light import light_of_scene
 from skybake.image.luminous import luminous_weights
-from skybake.image.scene import DARK, ROUNDING, Scene
+from skybake.image.scene import Scene
 from skybake.image.settings import Clouds, Lighting, MapSettings, View
+from skybake.image.survey import DARK, ROUNDING
 from skybake.inspect.clouded import clouded_light
 from skybake.inspect.traced import traced_radiance
 from skybake.optics.medium import Array

@@ -74,6 +74,37 @@ def longitude(text: str) -> float:
     return math.remainder(angle, 2 * math.pi)
 
 
+def sidereal_time(text: str) -> float:
+    """Read hours such as ``18h``, ``18.6h`` or ``18:36``, or an angle from 0deg to 360deg. [rad]"""
+    found = re.fullmatch(r"(\d{1,2}):([0-5]\d)|(\d{1,2}(?:\.\d+)?)h", text.strip(), re.ASCII)
+    if found is None:
+        return solar_longitude(text)
+    hours = float(found[3]) if found[3] else int(found[1]) + int(found[2]) / 60.0
+    if hours > 24.0:
+        raise click.BadParameter(f"must be from 0h to 24h, got {text}")
+    return math.radians(15.0 * hours)
+
+
+def stars(text: str) -> float | str:
+    """Read ``include``, ``exclude``, ``only`` or a magnitude, which is checked by settings."""
+    if text in {"include", "exclude", "only"}:
+        return text
+    try:
+        return float(text)
+    except ValueError:
+        raise click.BadParameter(
+            f"must be include, exclude, only or a magnitude such as 4.5, got {text!r}"
+        ) from None
+
+
+def scale(text: str) -> float:
+    """Read a factor, whose range settings check."""
+    try:
+        return float(text)
+    except ValueError:
+        raise click.BadParameter(f"must be a number such as 1.5, got {text!r}") from None
+
+
 def solar_longitude(text: str) -> float:
     """Read an angle from 0deg to 360deg. [rad]"""
     angle = _parse(text, parse_angle)
