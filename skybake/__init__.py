@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from skybake.environment.resample import resample
     from skybake.ephemeris.celestial import CelestialFrame
     from skybake.ephemeris.moment import Moment, TimeSpan, sun_at
+    from skybake.ephemeris.moon import Moon
     from skybake.ephemeris.place import SITES, Place, find_place
     from skybake.errors import (
         ArgumentError,
@@ -127,6 +128,7 @@ __all__ = [
     "MapLight",
     "MapSettings",
     "Moment",
+    "Moon",
     "Night",
     "Octahedral",
     "OutputError",
@@ -218,6 +220,7 @@ _HOMES = {
     "MapLight": "skybake.sidecar.map_light",
     "MapSettings": "skybake.image.settings",
     "Moment": "skybake.ephemeris.moment",
+    "Moon": "skybake.ephemeris.moon",
     "Night": "skybake.image.night",
     "Octahedral": "skybake.projection",
     "OutputError": "skybake.errors",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from skybake.baking.checks import check_targets
@@ -66,6 +66,8 @@ class Baked(Light):
         All about the light that a renderer needs, if it was asked for.
     light_files : tuple of Path
         The files that tell it.
+    eclipse : mapping of str to Attribute
+        What files state of an eclipse; empty without one.
     star_illuminance : float or None
         Of the horizontal by stars; None of a map without them. [lx]
     """
@@ -81,6 +83,7 @@ class Baked(Light):
     warnings: tuple[str, ...] = ()
     map_light: MapLight | None = None
     light_files: tuple[Path, ...] = ()
+    eclipse: Mapping[str, Attribute] = field(default_factory=dict)
     star_illuminance: float | None = None
 
 
@@ -185,13 +188,14 @@ def bake_scene(
         scene.light_clouds()
     begin("pixels")
     light = light_of_scene(scene)
+    eclipse = eclipse_attributes(scene)
     from_below, starlight = _from_below(scene), star_attributes(scene)
     described = None if light_files is None else map_light(scene, light)
     attributes = {
         **attributes_from_light(light),
         **({} if from_below is None else dict(zip(FROM_BELOW, from_below, strict=True))),
         **starlight,
-        **eclipse_attributes(scene),
+        **eclipse,
         **recipe_attributes(planet, settings),
         **(attributes or {}),
     }
@@ -258,6 +262,7 @@ def bake_scene(
         warnings=tuple(warnings),
         map_light=described,
         light_files=tuple(light_files or ()),
+        eclipse=eclipse,
         star_illuminance=starlight.get(STAR_ILLUMINANCE),
     )
 

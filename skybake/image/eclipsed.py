@@ -24,6 +24,10 @@ FINELY = 41
 UMBRA = 700.0
 """Distance from the shadow's axis within which it is seen finely. [km]"""
 
+AUREOLE = np.radians([0.0, 0.3, 0.6, 1.0, 1.7, 2.8, 4.5, 7.0])
+"""Angles from the sun at which rays are traced as well: the light around it, which most comes from
+air that is near, is dimmed more than that of the sky. [rad]"""
+
 EDGE = 1e-6
 """Angle by which rays stay away from the horizon itself. [rad]"""
 
@@ -124,17 +128,22 @@ def _nodes(eclipse: Eclipse) -> tuple[Array, Array, Array]:
     x = np.linspace(0.0, 1.0, BELOW if first == 0.0 else BELOW_FROM_SPACE)
     below = np.maximum(horizon + (math.pi - horizon) * x**2, horizon + EDGE)
     azimuth = np.linspace(-math.pi, math.pi, AROUND)
+    beside = np.concatenate([-AUREOLE[:0:-1], AUREOLE])
+    at_sun = eclipse.sun_zenith + beside
+    above = np.union1d(above, at_sun[(at_sun > first) & (at_sun < horizon - EDGE)])
+    wide = beside / max(math.sin(eclipse.sun_zenith), AUREOLE[-1])
+    azimuth = np.union1d(azimuth, wide[np.abs(wide) < math.pi])
     axis = eclipse.axis
     if first == 0.0 or axis is None:
         return above, below, azimuth
     flat, distance = math.hypot(axis[0], axis[1]), float(np.linalg.norm(axis))
     wide = min(UMBRA / distance, 1.0)
     fine = _around(math.acos(axis[2] / distance), wide, horizon + EDGE, math.pi)
-    below = np.unique(np.concatenate([below, fine]))
+    below = np.union1d(below, fine)
     middle = math.atan2(axis[1], axis[0])
     fine = middle + _around(0.0, min(UMBRA / max(flat, 1e-9), math.pi), -math.pi, math.pi)
     fine = (fine + math.pi) % (2.0 * math.pi) - math.pi
-    return above, below, np.unique(np.concatenate([azimuth, fine]))
+    return above, below, np.union1d(azimuth, fine)
 
 
 def _around(middle: float, extent: float, least: float, most: float) -> Array:

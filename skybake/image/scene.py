@@ -134,10 +134,13 @@ class Scene:
             return None
         from skybake.clouds.build import build_cloudscape
 
+        weights = self.xyz_weights / self.settings.encoding.white_luminance
+        if self.sky.eclipse is not None:
+            weights = weights * self.sky.eclipse.share_for_clouds[:, None]
         return build_cloudscape(
             self.planet.clouds,
             self.sky,
-            self.xyz_weights / self.settings.encoding.white_luminance,
+            weights,
             time=self.settings.clouds.time,
             quality=self.settings.clouds.quality,
             workers=self.workers,
@@ -219,14 +222,11 @@ class Scene:
         # A sun in the zenith touches every column, and its spectra would fill the memory.
         for first in range(0, len(flux), CELLS_AT_ONCE):
             part = slice(first, first + CELLS_AT_ONCE)
-            light = self.sun.radiance_per_irradiance(
-                cells.zenith[part],
-                cells.distance[part],
-                cells.azimuth[part] + self.settings.view.rotation,
-            )
+            bearing = cells.azimuth[part] + self.settings.view.rotation
+            where = cells.zenith[part], cells.distance[part], bearing
+            light = self.sun.radiance_per_irradiance(*where)
             flux[part] = (light @ self.rgb_weights) * cells.solid_angle[part, None]
             if self.cloudscape is not None:
-                bearing = cells.azimuth[part] + self.settings.view.rotation
                 flux[part] *= self.cloudscape.transmittance(cells.zenith[part], bearing)[:, None]
         return self.settings.lighting.sun_strength * flux
 

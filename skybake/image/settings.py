@@ -5,19 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from skybake.colour.exposure import luminance_from_ev, luminance_from_units
 from skybake.colour.space import ColourSpace, find_colour_space
+from skybake.ephemeris.moon import Moon
 from skybake.errors import InputError
 from skybake.formats.compression import parse_compression
 from skybake.image.night import Night
 from skybake.projection import Equirect, Projection, find_projection
 from skybake.sky.sky import METHODS
 from skybake.units import degrees, metres
-
-if TYPE_CHECKING:
-    from skybake.ephemeris.moon import Moon
 
 SUN_DISCS = ("include", "exclude", "only", "separate")
 BELOW_HORIZON = ("ground", "extend", "black")

@@ -189,8 +189,12 @@ def _radiance(
 ) -> tuple[Array, Array | None]:
     """Radiance per unit irradiance and, by the reference, its standard error. [sr⁻¹]"""
     if method == REFERENCE:
+        if sky.eclipse is not None:
+            raise InputError("eclipse: method must be full or hillaire, got reference")
         zenith, azimuth = directions.zenith, directions.azimuth
         return traced_radiance(planet, sky, zenith, azimuth, samples, clouds.time)
+    if sky.eclipse is not None and planet.clouds:
+        raise InputError("eclipse: must be probed without clouds")
     clouded = _clouded(planet, sky, directions, np.eye(sky.wavelengths.size), clouds)
     if clouded is not None:
         return _without_rounding(clouded), None

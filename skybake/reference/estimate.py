@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from skybake.reference.air import Air, air_at
 from skybake.reference.batches import estimate_means, samples_per_batch
 from skybake.reference.directions import Direction
 from skybake.reference.guide import Guide, make_guide
+from skybake.reference.occultation import Occultation, no_occultation, uncovered_share
 from skybake.reference.paths import mean_irradiance, mean_radiance
 from skybake.reference.rays import transmittance_to_space
 from skybake.reference.single import trace_single
@@ -58,6 +60,7 @@ def radiance(
     samples: int,
     seed: int = 0,
     orders: tuple[int, float] | None = None,
+    occultations: Sequence[Occultation] | None = None,
 ) -> tuple[Array, Array]:
     """Radiance of the sky by backward Monte Carlo, unbiased, with its standard error.
 
@@ -83,6 +86,8 @@ def radiance(
         be ``math.inf``. All of them are then sampled. Without it the first order
         comes from `single_scattering` and paths carry the others, which is
         much less noisy.
+    occultations : sequence of Occultation, optional
+        What is in front of the sun, at each wavelength; all orders are then sampled.
 
     Returns
     -------
@@ -104,6 +109,8 @@ def radiance(
     has a long tail: trust a standard error only if it halves with four times
     the samples.
     """
+    if occultations is not None and orders is None:
+        orders = 1, math.inf
     first, last = (2, math.inf) if orders is None else orders
     if first < 1 or last < first:
         message = f"orders: must be 1 <= first <= last, got {orders}"
@@ -115,7 +122,8 @@ def radiance(
 
     def mean_of(view: int, wavelength: int, batch: np.uint64) -> float:
         air, guide = models[wavelength]
-        rays = sun, altitude, views[view]
+        veil = no_occultation() if occultations is None else occultations[wavelength]
+        rays = sun, veil, altitude, views[view]
         return mean_radiance(air, guide, *rays, first, last, per_batch, batch)
 
     mean, stderr = estimate_means(len(views), len(models), seed, mean_of)
@@ -150,11 +158,18 @@ def single_scattering(
 
 
 def irradiance(
-    medium: Medium, altitude: float, sun_elevation: float, *, samples: int, seed: int = 0
+    medium: Medium,
+    altitude: float,
+    sun_elevation: float,
+    *,
+    samples: int,
+    seed: int = 0,
+    occultations: Sequence[Occultation] | None = None,
 ) -> Irradiance:
     """Direct and diffuse irradiance on a horizontal plane, by backward Monte Carlo.
 
-    Parameters and errors are those of `radiance`; every order is sampled.
+    Parameters and errors are those of `radiance`; every order is sampled. An occultation leaves
+    the transmittance as it is.
     """
     sun, _ = _directions(altitude, sun_elevation, 0.0, 0.0)
     models = _models(medium)
@@ -162,11 +177,15 @@ def irradiance(
 
     def mean_of(side: int, wavelength: int, batch: np.uint64) -> float:
         air, guide = models[wavelength]
-        return mean_irradiance(air, guide, sun, altitude, 1.0 - 2.0 * side, per_batch, batch)
+        veil = no_occultation() if occultations is None else occultations[wavelength]
+        return mean_irradiance(air, guide, sun, veil, altitude, 1.0 - 2.0 * side, per_batch, batch)
 
     mean, stderr = estimate_means(2, len(models), seed, mean_of)
     transmittance = np.array([transmittance_to_space(air, altitude, sun[2]) for air, _ in models])
-    direct = transmittance * max(0.0, sun[2])
+    shares = np.ones(len(models))
+    for i, veil in enumerate(occultations or ()):
+        shares[i] = uncovered_share(veil, 0.0, 0.0, 0.0)
+    direct = shares * transmittance * max(0.0, sun[2])
     return Irradiance(transmittance, direct, mean[0], stderr[0], mean[1], stderr[1])
 
 

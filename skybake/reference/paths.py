@@ -21,6 +21,7 @@ from skybake.reference.directions import (
     uniform,
 )
 from skybake.reference.guide import Guide, draw_guided, guided_density, look_up
+from skybake.reference.occultation import Occultation, uncovered_share
 from skybake.reference.rays import (
     Cuts,
     new_cuts,
@@ -43,12 +44,17 @@ SURVIVAL = 0.3
 
 @kernel
 def follow(
-    air, guide, sun, ray, stretches, cumulative, u, up, h, direction, first, last, scratch, state
-):
+    air, guide, sun, occultation, observer, ray, stretches, cumulative, u, up, h, direction,
+    first, last, scratch, state,
+):  # fmt: skip
     """Radiance that one path brings, orders `first` to `last`, per unit solar irradiance.
 
     Parameters
     ----------
+    occultation : Occultation
+        What is in front of the sun.
+    observer : float
+        Distance of the path's start from the planet's centre, along (0, 0, 1). [km]
     ray, stretches, cumulative
         The path's first ray, from `up`, `h` along `direction`.
     u : float
@@ -82,7 +88,8 @@ def follow(
         if weight <= 0.0:
             return radiance
         if order >= first:
-            radiance += weight * _sunlight(air, each, total, h, mu_s, direction, sun, at_ground)
+            light = _sunlight(air, each, total, h, mu_s, direction, sun, at_ground)
+            radiance += weight * _uncovered(light, occultation, air.r_bottom + h, up, observer)
         if order >= last:
             return radiance
         promise = weight * look_up(guide, guide.ambient, h, mu_s)
@@ -109,6 +116,14 @@ def follow(
         )
         u = uniform(state)
         order += 1
+
+
+@kernel
+def _uncovered(light, occultation, r, up, observer):
+    """Light of a vertex in the direction `up` from the planet's centre that passes the moon."""
+    if light <= 0.0:
+        return 0.0
+    return light * uncovered_share(occultation, r * up[0], r * up[1], r * up[2] - observer)
 
 
 @kernel
@@ -184,6 +199,7 @@ def mean_radiance(
     air: Air,
     guide: Guide,
     sun: Direction,
+    occultation: Occultation,
     h: float,
     direction: Direction,
     first: int,
@@ -194,12 +210,14 @@ def mean_radiance(
     """Mean over `samples` paths from altitude `h` under the vertical (0, 0, 1)."""
     state = np.array([seed], np.uint64)
     return float(
-        _mean_radiance(air, guide, sun, h, direction, first, last, samples, _new_room(air), state)
+        _mean_radiance(
+            air, guide, sun, occultation, h, direction, first, last, samples, _new_room(air), state
+        )
     )
 
 
 @kernel
-def _mean_radiance(air, guide, sun, h, direction, first, last, samples, room, state):
+def _mean_radiance(air, guide, sun, occultation, h, direction, first, last, samples, room, state):
     up = (0.0, 0.0, 1.0)
     scratch = (room.cuts, room.stretches, room.coefficients)
     ray = trace(air, h, direction[2], room.first_cuts)
@@ -214,6 +232,8 @@ def _mean_radiance(air, guide, sun, h, direction, first, last, samples, room, st
             air,
             guide,
             sun,
+            occultation,
+            air.r_bottom + h,
             ray,
             stretches,
             cumulative,
@@ -230,7 +250,14 @@ def _mean_radiance(air, guide, sun, h, direction, first, last, samples, room, st
 
 
 def mean_irradiance(
-    air: Air, guide: Guide, sun: Direction, h: float, facing: float, samples: int, seed: np.uint64
+    air: Air,
+    guide: Guide,
+    sun: Direction,
+    occultation: Occultation,
+    h: float,
+    facing: float,
+    samples: int,
+    seed: np.uint64,
 ) -> float:
     """Mean diffuse irradiance on a horizontal plane over `samples` paths.
 
@@ -240,11 +267,12 @@ def mean_irradiance(
         1 for light from above, -1 for light from below.
     """
     state = np.array([seed], np.uint64)
-    return float(_mean_irradiance(air, guide, sun, h, facing, samples, _new_room(air), state))
+    room = _new_room(air)
+    return float(_mean_irradiance(air, guide, sun, occultation, h, facing, samples, room, state))
 
 
 @kernel
-def _mean_irradiance(air, guide, sun, h, facing, samples, room, state):
+def _mean_irradiance(air, guide, sun, occultation, h, facing, samples, room, state):
     up = (0.0, 0.0, 1.0)
     normal = (0.0, 0.0, facing)
     scratch = (room.cuts, room.stretches, room.coefficients)
@@ -277,7 +305,7 @@ def _mean_irradiance(air, guide, sun, h, facing, samples, room, state):
             air, guide, ray, h, sun[2], dot(direction, sun), True, 1, cumulative
         )
         total += (cosine / density) * follow(
-            air, guide, sun, ray, stretches, cumulative, uniform(state), up, h, direction,
-            1, np.iinfo(np.int64).max, scratch, state,
+            air, guide, sun, occultation, air.r_bottom + h, ray, stretches, cumulative,
+            uniform(state), up, h, direction, 1, np.iinfo(np.int64).max, scratch, state,
         )  # fmt: skip
     return total / samples

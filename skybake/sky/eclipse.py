@@ -85,8 +85,8 @@ class Eclipse:
         Share of the sun's light above the observer's air.
     radius, top : float
         Of the observer and of the top of the atmosphere. [km]
-    horizon : float
-        Zenith angle of the planet's horizon. [rad]
+    horizon, sun_zenith : float
+        Zenith angles of the planet's horizon and of the sun. [rad]
     """
 
     def __init__(self, sky: Sky, source: Source, moon: Moon, shadow: Shadow) -> None:
@@ -94,6 +94,7 @@ class Eclipse:
         self.phase: Phase = phase_at_observer(shadow)
         self.uncovered: Array = shares_at(shadow, np.zeros(3))
         self.radius, self.top = sky.medium.r_bottom + sky.altitude, sky.medium.r_top
+        self.sun_zenith = source.zenith
         self.horizon = math.pi - math.asin(min(1.0, sky.medium.r_bottom / self.radius))
 
     @property
@@ -111,6 +112,23 @@ class Eclipse:
         """
         place = axis_on_ground(self._shadow, self.radius, self._sky.medium.r_bottom)
         return None if place is None else place - np.array([0.0, 0.0, self.radius])
+
+    @property
+    def share_for_clouds(self) -> Array:
+        """Share of light by which clouds are lit, shape (wavelength,).
+
+        That of the sun at the observer or, where it is less as in totality, of the sky on the
+        ground there: clouds far away are lit as those above.
+
+        Raises
+        ------
+        InputError
+            If the observer is above the atmosphere, from where clouds are in sun and shadow.
+        """
+        if self.radius > self.top:
+            raise InputError("eclipse: must be without clouds for an observer in space")
+        ground = self._diffuse.ground[0, 0, : self.uncovered.size]
+        return np.maximum(self.uncovered, ground)
 
     def radiance_per_irradiance(self, mu: Array, azimuth: Array) -> tuple[Array, Array]:
         """Radiance per unit irradiance of the whole sun, with the eclipse and without it.

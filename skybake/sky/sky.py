@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from skybake.ephemeris.moon import Moon
 from skybake.errors import InputError
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.medium import Array, build_medium
@@ -24,7 +25,6 @@ from skybake.sky.skylight import Skylight
 from skybake.sky.source import Source, check_direction
 
 if TYPE_CHECKING:
-    from skybake.ephemeris.moon import Moon
     from skybake.sky.eclipse import Eclipse
 
 METHODS = ("full", "hillaire", "march")

@@ -29,6 +29,12 @@ def print_summary(baked: Baked, settings: MapSettings, seconds: float) -> None:
         f"it), sky {baked.sky_illuminance:.5g} lx on the horizontal; "
         f"1.0 = {baked.white_luminance:.6g} cd/m2; {baked.pixel}; {seconds:.2f} s"
     )
+    eclipse = _eclipse(baked)
+    if eclipse is not None:
+        click.echo(
+            f"eclipse: {eclipse['phase']}, magnitude {eclipse['magnitude']:.4f}, "
+            f"{eclipse['obscuration']:.2%} of the disc covered"
+        )
     if baked.from_below is not None:
         by_map, by_ground = baked.from_below
         click.echo(f"from below {by_map:.5g} lx, instead of {by_ground:.5g} lx by the ground")
@@ -91,6 +97,7 @@ def result(
         "direct_illuminance_lux": baked.direct_illuminance,
         "direct_normal_illuminance_lux": baked.direct_normal_illuminance,
         "sky_illuminance_lux": baked.sky_illuminance,
+        "eclipse": _eclipse(baked),
         "star_illuminance_lux": baked.star_illuminance,
         "white_luminance_cd_m2": baked.white_luminance,
         "exposure_ev": light.exposure_ev,
@@ -107,6 +114,13 @@ def result(
         "preview_white": None if baked.preview_white is None else list(baked.preview_white),
         "seconds": round(seconds, 3),
     }
+
+
+def _eclipse(baked: Baked) -> dict[str, Any] | None:
+    if not baked.eclipse:
+        return None
+    phase, magnitude, obscuration = baked.eclipse.values()
+    return {"phase": phase, "magnitude": magnitude, "obscuration": obscuration}
 
 
 def _target(settings: MapSettings) -> dict[str, Any]:
