@@ -193,7 +193,7 @@ def shine(grid: Grid, fraction: float, sun: Array) -> tuple[Voxels, Floats]:
 
 def fill_volume(voxels: Voxels, diffuse: Diffuse, out: Floats) -> None:
     """Interleave what rays look up, shape (z, y, x, 1 + channel * harmonic)."""
-    out[..., 0] = -np.log(np.maximum(voxels.beam, 1e-30))
+    out[..., 0] = voxels.beam
     harmonics = diffuse.moments.shape[3]
     for channel, moments in enumerate(diffuse.moments):
         first = 1 + channel * harmonics

@@ -11,6 +11,9 @@ import numpy.typing as npt
 from skybake.jit.kernel import kernel
 from skybake.optics.medium import Array
 
+FAINTEST = 1e-30
+"""Share of the sun's beam that is told from none."""
+
 
 class LayerLight(NamedTuple):
     """Light in a tile, for one sun or for several heights of it.
@@ -18,8 +21,8 @@ class LayerLight(NamedTuple):
     Attributes
     ----------
     volume : ndarray of float32, shape (sun, z, y, x, 1 + channel * harmonic)
-        In each voxel the optical depth toward the sun, without forward peaks, and the moments of
-        the diffuse radiance.
+        In each voxel the mean of the sun's beam, without forward peaks and as a share of the light
+        above the layer, and the moments of the diffuse radiance.
     spacing : ndarray of float64, shape (3,)
         Of voxels along z, y and x. [km]
     base : float
@@ -82,7 +85,11 @@ def fill_corners(light, x, y, altitude, corner, weight):
 
 @kernel
 def sun_depth(light, place, corner, weight):
-    """Optical depth toward the sun between voxels, without forward peaks."""
+    """Optical depth toward the sun between voxels, without forward peaks.
+
+    Beams are interpolated rather than their depths, so that they stay what they are on average
+    where shadows begin.
+    """
     first = int(place)
     share = place - first
     total = 0.0
@@ -92,7 +99,7 @@ def sun_depth(light, place, corner, weight):
         if share > 0.0:
             value += share * (light.volume[first + 1, k, j, i, 0] - value)
         total += weight[n] * value
-    return total
+    return -math.log(max(total, FAINTEST))
 
 
 @kernel

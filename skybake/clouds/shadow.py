@@ -72,10 +72,10 @@ def _visible(field, light, leaving, radius, altitude, direction, distance, sun):
         k = min(int((h - base) / light.spacing[0]), light.volume.shape[1] - 1)
         j = math.floor(y / light.spacing[1]) % leaving.shape[1]
         i = math.floor(x / light.spacing[2]) % leaving.shape[2]
-        depth = float(light.volume[which, k, j, i, 0])
+        beam = float(light.volume[which, k, j, i, 0])
         if share > 0.0:
-            depth += share * (light.volume[which + 1, k, j, i, 0] - depth)
-        return math.exp(-depth)
+            beam += share * (light.volume[which + 1, k, j, i, 0] - beam)
+        return beam
     face = base if mu_s > 0.0 else top
     chord = r * r * mu_s * mu_s + (face - h) * (2.0 * radius + face + h)
     if chord < 0.0:
