@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from skybake.clouds.merging import merge_levels, merge_pairs, spread_pairs
+from skybake.clouds.merging import merge_levels, merge_pairs
 from skybake.clouds.passes import Passes
 from skybake.clouds.transfer import Entering, Floats, Scattering, Voxels
 from skybake.jit.workers import Workers
@@ -83,9 +83,10 @@ def solve_diffuse(
 
     def solve(channel: int, like: _Known | None) -> _Known:
         light = Entering(*(part[channel : channel + 1] for part in entering))
-        solved = _solve_channel(voxels, scattering, light, moments[channel], like)
-        up[channel], down[channel], passes[channel], merged = solved
-        return _Known(moments[channel], merged)
+        made = Passes(voxels, scattering, light)
+        known, passes[channel] = _solve_channel(voxels, scattering, light, made, like)
+        up[channel], down[channel] = made.finish(known.moments, moments[channel])
+        return known
 
     # Particles are grey, so that channels differ in little but their brightness.
     middle = channels // 2
@@ -101,29 +102,31 @@ def solve_diffuse(
 
 
 class _Known(NamedTuple):
-    """Moments of a channel: in the voxels, and in merged ones if those were solved for."""
+    """Moments of a channel: in cloudy voxels, and in merged ones if those were solved for."""
 
     moments: Floats
     merged: Floats | None
 
 
 def _solve_channel(
-    voxels: Voxels, scattering: Scattering, entering: Entering, out: Floats, like: _Known | None
-) -> tuple[float, float, int, Floats | None]:
-    passes = Passes(voxels, scattering, entering)
+    voxels: Voxels,
+    scattering: Scattering,
+    entering: Entering,
+    passes: Passes,
+    like: _Known | None,
+) -> tuple[_Known, int]:
     if not _can_merge(voxels, LARGE):
-        out[...] = 0.0
-        return *passes.until_settled(out, MAX_PASSES, TOLERANCE), None
-    merged, before = _merged_light(voxels, scattering, entering, out.shape[2])
+        known, number = passes.until_settled(passes.dark(), MAX_PASSES, TOLERANCE)
+        return _Known(known, None), number
+    merged, before = _merged_light(voxels, scattering, entering)
     if like is None or like.merged is None:
-        spread_pairs(merged, out)
+        start = passes.spread(merged)
     else:
         # What merging loses is lost of both alike: only what they differ in is spread.
         alike = _share_alike(merged, like.merged)
-        spread_pairs(merged - alike * like.merged, out)
-        out += alike * like.moments
-    up, down, number = passes.until_settled(out, MAX_PASSES, FINE)
-    return up, down, before + number, merged
+        start = passes.spread(merged - alike * like.merged) + alike * like.moments
+    known, number = passes.until_settled(start, MAX_PASSES, FINE)
+    return _Known(known, merged), before + number
 
 
 def _share_alike(light: Floats, other: Floats) -> np.float32:
@@ -132,20 +135,20 @@ def _share_alike(light: Floats, other: Floats) -> np.float32:
     return np.float32(float(np.vdot(light, other)) / square if square > 0.0 else 0.0)
 
 
-def _merged_light(
-    voxels: Voxels, scattering: Scattering, entering: Entering, harmonics: int
-) -> tuple[Floats, int]:
+def _merged_light(voxels: Voxels, scattering: Scattering, entering: Entering) -> tuple[Floats, int]:
     """Return the moments in merged voxels, and how many passes that took."""
     merged = _merge(voxels)
     levels, rows, columns = merged.extinction.shape
     light = entering._replace(sun=merge_levels(entering.sun, levels))
-    state = np.zeros((levels, rows, harmonics, columns), np.float32)
-    number = 0
+    passes = Passes(merged, scattering, light)
+    start, before = passes.dark(), 0
     if _can_merge(merged, SMALL):
-        coarser, number = _merged_light(merged, scattering, light, harmonics)
-        spread_pairs(coarser, state)
-    *_, more = Passes(merged, scattering, light).until_settled(state, MAX_PASSES, ROUGH)
-    return state, number + more
+        coarser, before = _merged_light(merged, scattering, light)
+        start = passes.spread(coarser)
+    known, number = passes.until_settled(start, MAX_PASSES, ROUGH)
+    moments = np.empty((levels, rows, (scattering.order + 1) ** 2, columns), np.float32)
+    passes.finish(known, moments)
+    return moments, before + number
 
 
 def _can_merge(voxels: Voxels, least: int) -> bool:
