@@ -30,6 +30,9 @@ SKETCH_LEAST = 8
 
 MOST_REFLECTED = 0.98
 
+HEIGHTS = 3
+"""At which the light of clear air within a layer is told, from its base to its top."""
+
 
 @dataclass(frozen=True, eq=False)
 class Grid:
@@ -227,8 +230,15 @@ def enter(
         parts = _mean_in_cells(quadrature, turn, hemisphere, light)
         return Light(parts[:, 0], parts[:, 1])
 
-    above = mean_light(grid.top, quadrature.downward)
-    sky = above.single + above.diffuse
+    heights = np.linspace(grid.base, grid.top, HEIGHTS)
+    # (height, hemisphere, single or diffuse, direction, wavelength)
+    clear = np.array(
+        [
+            [mean_light(height, half) for half in (quadrature.downward, quadrature.upward)]
+            for height in heights.tolist()
+        ]
+    )
+    sky = clear[-1, 0].sum(axis=0)
     if reflectance is not None:
 
         def glow(directions: Array) -> Array:
@@ -237,9 +247,8 @@ def enter(
         albedo = channels_to_wavelengths(reflectance, weights)
         more = _mean_in_cells(quadrature, turn, quadrature.downward, glow)
         sky = sky + air.brightening(albedo) * more
-    below = mean_light(grid.base, quadrature.upward)
-    at_base = mean_light(grid.base, quadrature.downward)
-    down = quadrature.flux((at_base.single + at_base.diffuse) @ weights)
+    below = Light(*clear[0, 1])
+    down = quadrature.flux(clear[0, 0].sum(axis=0) @ weights)
     slope = max(float(sun[2]), 0.0)
     down_sun = slope * (air.sunlight(np.array([grid.base]), float(sun[2])) @ weights)[0]
     brighter = np.ones_like(down)
@@ -254,6 +263,8 @@ def enter(
         down=down,
         down_sun=down_sun,
         sun_share=around.sun_share,
+        clear_single=(clear[:, :, 0] @ weights).transpose(3, 1, 0, 2),
+        clear_diffuse=(clear[:, :, 1] @ weights).transpose(3, 1, 0, 2),
     )
 
 

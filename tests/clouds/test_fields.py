@@ -169,6 +169,14 @@ def test_an_overcast_brings_the_ground_the_light_of_a_monte_carlo_program(tmp_pa
     assert np.all(np.abs(off) < most), off
 
 
+@pytest.mark.parametrize("sun", [60.0, 3.0])
+def test_under_a_layer_of_hardly_any_cloud_is_the_light_of_a_clear_sky(tmp_path, sun):
+    clouds = cloudscape(overcast(tmp_path, 1e-3), sun, 0.001, "draft")
+    layer = clouds.solved[-1]
+    at = int(np.argmin(np.abs(layer.light.sun_mu - math.sin(math.radians(sun)))))
+    assert layer.down[at] / layer.down_clear[at] == pytest.approx(1.0, abs=0.025)
+
+
 def stratus_error(folder, sun, altitude):
     rows = cloud_table(f"cloud_STRATUS_TAU8_{altitude}km")
     rows = rows[rows["sun_elevation_deg"] == sun]
