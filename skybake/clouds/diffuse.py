@@ -29,6 +29,16 @@ ROUGH = 1e-3
 FINE = 1.5e-4
 """Tolerance of what starts from there. Drawn cumuli then keep their light to 5e-4."""
 
+FAR = 6e-4
+"""The same under suns over clouds that are far away, which start from the light of the next sun."""
+
+
+class Known(NamedTuple):
+    """Moments of a channel: in cloudy voxels, and in merged ones if those were solved for."""
+
+    moments: Floats
+    merged: Floats | None
+
 
 class Diffuse(NamedTuple):
     """Diffuse light of a layer.
@@ -41,16 +51,23 @@ class Diffuse(NamedTuple):
         Mean irradiances of horizontal planes: upward at the top, and downward at the base.
     passes : int
         How many it took, those on merged voxels included.
+    known : tuple of Known
+        By channel, from which light under another sun may start.
     """
 
     moments: Floats
     up: Array
     down: Array
     passes: int
+    known: tuple[Known, ...]
 
 
 def solve_diffuse(
-    voxels: Voxels, scattering: Scattering, entering: Entering, workers: Workers
+    voxels: Voxels,
+    scattering: Scattering,
+    entering: Entering,
+    workers: Workers,
+    near: tuple[Known, ...] | None = None,
 ) -> Diffuse:
     """Solve for the diffuse light of all channels.
 
@@ -64,6 +81,8 @@ def solve_diffuse(
         Light from outside.
     workers : Workers
         Threads that do the work, a channel each.
+    near : tuple of Known, optional
+        Light of the same voxels under another sun, from which to start.
 
     Returns
     -------
@@ -81,31 +100,32 @@ def solve_diffuse(
     moments = np.empty((channels, levels, rows, harmonics, columns), np.float32)
     up, down, passes = np.empty(channels), np.empty(channels), np.zeros(channels, int)
 
-    def solve(channel: int, like: _Known | None) -> _Known:
+    known: list[Known | None] = [None] * channels
+
+    def solve(channel: int, like: Known | None, tolerance: float) -> None:
         light = Entering(*(part[channel : channel + 1] for part in entering))
         made = Passes(voxels, scattering, light)
-        known, passes[channel] = _solve_channel(voxels, scattering, light, made, like)
-        up[channel], down[channel] = made.finish(known.moments, moments[channel])
-        return known
+        solved, passes[channel] = _solve_channel(voxels, scattering, light, made, like, tolerance)
+        up[channel], down[channel] = made.finish(solved.moments, moments[channel])
+        known[channel] = solved
 
-    # Particles are grey, so that channels differ in little but their brightness.
     middle = channels // 2
-    known = solve(middle, None)
-    others = [channel for channel in range(channels) if channel != middle]
+    others = list(range(channels))
+    if near is None:
+        # Particles are grey, so that channels differ in little but their brightness.
+        solve(middle, None, FINE)
+        others.remove(middle)
 
     def work(first: int, last: int) -> None:
         for channel in others[first:last]:
-            solve(channel, known)
+            if near is None:
+                solve(channel, known[middle], FINE)
+            else:
+                solve(channel, near[channel], FAR)
 
     workers.run_rows(len(others), work)
-    return Diffuse(moments, up, down, int(passes.max()))
-
-
-class _Known(NamedTuple):
-    """Moments of a channel: in cloudy voxels, and in merged ones if those were solved for."""
-
-    moments: Floats
-    merged: Floats | None
+    solved = tuple(each for each in known if each is not None)
+    return Diffuse(moments, up, down, int(passes.max()), solved)
 
 
 def _solve_channel(
@@ -113,11 +133,12 @@ def _solve_channel(
     scattering: Scattering,
     entering: Entering,
     passes: Passes,
-    like: _Known | None,
-) -> tuple[_Known, int]:
+    like: Known | None,
+    tolerance: float,
+) -> tuple[Known, int]:
     if not _can_merge(voxels, LARGE):
         known, number = passes.until_settled(passes.dark(), MAX_PASSES, TOLERANCE)
-        return _Known(known, None), number
+        return Known(known, None), number
     merged, before = _merged_light(voxels, scattering, entering)
     if like is None or like.merged is None:
         start = passes.spread(merged)
@@ -125,8 +146,8 @@ def _solve_channel(
         # What merging loses is lost of both alike: only what they differ in is spread.
         alike = _share_alike(merged, like.merged)
         start = passes.spread(merged - alike * like.merged) + alike * like.moments
-    known, number = passes.until_settled(start, MAX_PASSES, FINE)
-    return _Known(known, merged), before + number
+    known, number = passes.until_settled(start, MAX_PASSES, tolerance)
+    return Known(known, merged), before + number
 
 
 def _share_alike(light: Floats, other: Floats) -> np.float32:

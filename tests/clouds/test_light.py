@@ -11,10 +11,9 @@ from skybake.clouds.particles import TERMS
 
 def light_with(beam):
     """Two columns side by side, whose voxels the sun reaches with these shares of its beam."""
-    volume = np.zeros((1, 1, 1, 2, 2), np.float32)
-    volume[0, 0, 0, :, 0] = beam
     return LayerLight(
-        volume=volume,
+        beam=np.array(beam, np.float32).reshape(1, 1, 1, 2),
+        moments=np.zeros((1, 1, 1, 2, 1), np.uint16),
         spacing=np.array([1.0, 1.0, 1.0]),
         base=0.0,
         sun_mu=np.array([0.5]),
