@@ -30,6 +30,9 @@ SKETCH_LEAST = 8
 
 MOST_REFLECTED = 0.98
 
+HEIGHTS = 3
+"""At which the light of clear air within a layer is told, from its base to its top."""
+
 
 @dataclass(frozen=True, eq=False)
 class Grid:
@@ -144,8 +147,8 @@ def solve_layer(
     """
     quadrature, turn = directions_of(particles, suns[0])
     harmonics, channels = (particles.order + 1) ** 2, weights.shape[1]
-    depth = np.empty((len(suns), *grid.extinction.shape), np.float32)
-    moments = np.empty((*depth.shape, channels * harmonics), np.uint16)
+    beam = np.empty((len(suns), *grid.extinction.shape), np.float32)
+    moments = np.empty((*beam.shape, channels * harmonics), np.uint16)
     leaving = np.empty((len(suns), *grid.extinction.shape[1:]), np.float32)
     irradiance = np.empty((len(suns), grid.extinction.shape[0], channels))
     mean = np.empty_like(irradiance)
@@ -159,14 +162,14 @@ def solve_layer(
         near = known.get(s - 1) if s > own else known.get(s + 1)
         diffuse = solve_diffuse(voxels, scattering, entering, workers, near)
         known[s] = diffuse.known
-        depth[s] = -np.log(np.maximum(voxels.beam, 1e-30))
+        beam[s] = voxels.beam
         fill_moments(diffuse, moments[s])
         irradiance[s] = entering.sun.T
         mean[s] = diffuse.moments[:, :, :, 0].mean(axis=(2, 3), dtype=float).T
         down[s], down_clear[s] = diffuse.down, entering.down
     degree = degrees(particles.order)
     light = LayerLight(
-        depth=depth,
+        beam=beam,
         moments=moments,
         spacing=grid.spacing,
         base=grid.base,
@@ -235,8 +238,15 @@ def enter(
         parts = _mean_in_cells(quadrature, turn, hemisphere, light)
         return Light(parts[:, 0], parts[:, 1])
 
-    above = mean_light(grid.top, quadrature.downward)
-    sky = above.single + above.diffuse
+    heights = np.linspace(grid.base, grid.top, HEIGHTS)
+    # (height, hemisphere, single or diffuse, direction, wavelength)
+    clear = np.array(
+        [
+            [mean_light(height, half) for half in (quadrature.downward, quadrature.upward)]
+            for height in heights.tolist()
+        ]
+    )
+    sky = clear[-1, 0].sum(axis=0)
     if reflectance is not None:
 
         def glow(directions: Array) -> Array:
@@ -245,9 +255,8 @@ def enter(
         albedo = channels_to_wavelengths(reflectance, weights)
         more = _mean_in_cells(quadrature, turn, quadrature.downward, glow)
         sky = sky + air.brightening(albedo) * more
-    below = mean_light(grid.base, quadrature.upward)
-    at_base = mean_light(grid.base, quadrature.downward)
-    down = quadrature.flux((at_base.single + at_base.diffuse) @ weights)
+    below = Light(*clear[0, 1])
+    down = quadrature.flux(clear[0, 0].sum(axis=0) @ weights)
     slope = max(float(sun[2]), 0.0)
     down_sun = slope * (air.sunlight(np.array([grid.base]), float(sun[2])) @ weights)[0]
     brighter = np.ones_like(down)
@@ -262,6 +271,8 @@ def enter(
         down=down,
         down_sun=down_sun,
         sun_share=around.sun_share,
+        clear_single=(clear[:, :, 0] @ weights).transpose(3, 1, 0, 2),
+        clear_diffuse=(clear[:, :, 1] @ weights).transpose(3, 1, 0, 2),
     )
 
 

@@ -11,14 +11,18 @@ import numpy.typing as npt
 from skybake.jit.kernel import kernel
 from skybake.optics.medium import Array
 
+FAINTEST = 1e-30
+"""Share of the sun's beam that is told from none."""
+
 
 class LayerLight(NamedTuple):
     """Light in a tile, for one sun or for several heights of it.
 
     Attributes
     ----------
-    depth : ndarray of float32, shape (sun, z, y, x)
-        Optical depth of each voxel toward the sun, without forward peaks.
+    beam : ndarray of float32, shape (sun, z, y, x)
+        Mean of the sun's beam in each voxel, without forward peaks and as a share of the light
+        above the layer.
     moments : ndarray of uint16, shape (sun, z, y, x, channel * harmonic)
         Of the diffuse radiance in each voxel, see `half_words`.
     spacing : ndarray of float64, shape (3,)
@@ -39,7 +43,7 @@ class LayerLight(NamedTuple):
         Of `Particles`.
     """
 
-    depth: npt.NDArray[np.float32]
+    beam: npt.NDArray[np.float32]
     moments: npt.NDArray[np.uint16]
     spacing: Array
     base: float
@@ -84,7 +88,7 @@ def sun_share(light, mu_s):
 @kernel
 def fill_corners(light, x, y, altitude, corner, weight):
     """Write indices of the eight voxels around a point, (8, 3) as z, y, x, and their weights."""
-    _, levels, rows, columns = light.depth.shape
+    _, levels, rows, columns = light.beam.shape
     fz = min(max((altitude - light.base) / light.spacing[0] - 0.5, 0.0), levels - 1.0)
     fy, fx = y / light.spacing[1] - 0.5, x / light.spacing[2] - 0.5
     k = min(int(fz), max(levels - 2, 0))
@@ -100,17 +104,21 @@ def fill_corners(light, x, y, altitude, corner, weight):
 
 @kernel
 def sun_depth(light, place, corner, weight):
-    """Optical depth toward the sun between voxels, without forward peaks."""
+    """Optical depth toward the sun between voxels, without forward peaks.
+
+    Beams are interpolated rather than their depths, so that they stay what they are on average
+    where shadows begin.
+    """
     first = int(place)
     share = place - first
     total = 0.0
     for n in range(8):
         k, j, i = corner[n, 0], corner[n, 1], corner[n, 2]
-        value = float(light.depth[first, k, j, i])
+        value = float(light.beam[first, k, j, i])
         if share > 0.0:
-            value += share * (light.depth[first + 1, k, j, i] - value)
+            value += share * (light.beam[first + 1, k, j, i] - value)
         total += weight[n] * value
-    return total
+    return -math.log(max(total, FAINTEST))
 
 
 @kernel

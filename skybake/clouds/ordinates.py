@@ -77,7 +77,7 @@ def allocate_sweep(directions: int, cells: int) -> SweepScratch:
 
 
 @kernel
-def sweep(cells, hemisphere, is_upward, light, known, radiance, scratch, moments):
+def sweep(cells, hemisphere, is_upward, light, known, radiance, airlight, scratch, moments):
     """Carry light along all directions of a hemisphere, plane by plane.
 
     Parameters
@@ -94,6 +94,9 @@ def sweep(cells, hemisphere, is_upward, light, known, radiance, scratch, moments
         Moments of the diffuse radiance, as known so far, see `take_moments`.
     radiance : ndarray of float32, shape (direction, y * x)
         What enters, on the lattice of rays; receives what leaves.
+    airlight : ndarray of float32, shape (z + 1, direction)
+        What air adds between where light enters and the middles of planes, in the order in which
+        they are crossed, and at last where it leaves.
     scratch : SweepScratch
         Work space.
     moments : ndarray of float32, shape (cell * harmonic,)
@@ -112,6 +115,8 @@ def sweep(cells, hemisphere, is_upward, light, known, radiance, scratch, moments
     most = np.int64(1)
     for d in range(directions):
         most = max(most, hemisphere.parts[d])
+    # Air is the same over a plane: rays are kept as they would be without it, until they meet
+    # cloud.
     for q in range(levels):
         k = q if is_upward else levels - 1 - q
         for part in range(most):
@@ -133,26 +138,37 @@ def sweep(cells, hemisphere, is_upward, light, known, radiance, scratch, moments
                     )
                     step = np.float32(hemisphere.length[d] / parts)
                     share = np.float32(1.0 / parts)
+                    added = airlight[q, d]
                     value = scratch.value[count]
                     if cells.is_whole:
                         at = row[0] - shift_y
                         at += rows if at < 0 else 0
                         ray = radiance[d, at * columns : (at + 1) * columns]
+                        _add(ray, added)
                         rest = columns - shift_x
                         _cross(met[shift_x:], source[shift_x:], ray, step, share, value[shift_x:])
                         _cross(met[:shift_x], source[:shift_x], ray[rest:], step, share, value)
+                        _add(ray, -added)
                     else:
                         ray = radiance[d]
                         _place(row, column, shift_y, shift_x, rows, columns, scratch.place)
                         for n in range(row.size):
-                            entering[n] = ray[scratch.place[n]]
+                            entering[n] = ray[scratch.place[n]] + added
                         _cross(met, source, entering, step, share, value)
                         for n in range(row.size):
-                            ray[scratch.place[n]] = entering[n]
+                            ray[scratch.place[n]] = entering[n] - added
                     active[count] = d
                     count += 1
                 gathered = moments[begin * harmonics : end * harmonics]
                 _gather(scratch.value, active[:count], hemisphere.project, gathered, row.size)
+    for d in range(directions):
+        _add(radiance[d], airlight[levels, d])
+
+
+@kernel
+def _add(ray, added):
+    for n in range(ray.size):
+        ray[n] += added
 
 
 @kernel

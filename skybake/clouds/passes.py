@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from skybake.clouds.air_within import air_within
 from skybake.clouds.cells import (
     CHUNK,
     all_cells,
@@ -45,6 +46,8 @@ class Passes:
         self._radiance = np.empty((half, rows * columns), np.float32)
         self._scratch = flatten(allocate_sweep(half, max(columns, CHUNK)))
         self._leaving = voxels.leaving
+        self._air = [air_within(voxels, quadrature, entering, side) for side in (0, 1)]
+        self._share = 1.0
 
     def dark(self) -> Floats:
         """Return moments of cloudy voxels without light."""
@@ -87,6 +90,7 @@ class Passes:
         lit = self._leaving * entering.sun_share[0]
         sunlight = entering.down_sun[0] * lit
         share = (down + sunlight) / (entering.down[0] + entering.down_sun[0] + 1e-300)
+        self._share = share
         below = share * entering.below[0] + lit * entering.below_lit[0]
         self._radiance[...] = below[:, None]
         self._sweep(cells, 1, *given)
@@ -94,6 +98,8 @@ class Passes:
         return up, down
 
     def _sweep(self, cells: Flat, side: int, known: Flat, new: Flat) -> None:
+        air = self._air[side]
+        added = (air.added + self._share * air.shared).astype(np.float32)
         sweep(
             cells,
             self._flat_sweeps[side],
@@ -101,6 +107,7 @@ class Passes:
             self._light,
             known,
             self._radiance,
+            added,
             self._scratch,
             new,
         )

@@ -61,7 +61,7 @@ def _visible(field, light, leaving, radius, altitude, direction, distance, sun):
     h = r - radius
     mu_s = (sun[0] * px + sun[1] * py + sun[2] * above) / r
     base = light.base
-    top = base + light.depth.shape[1] * light.spacing[0]
+    top = base + light.beam.shape[1] * light.spacing[0]
     is_behind = h < base if mu_s > 0.0 else h > top
     if not is_behind and not base <= h <= top:
         return 1.0
@@ -70,13 +70,13 @@ def _visible(field, light, leaving, radius, altitude, direction, distance, sun):
     which = int(place)
     share = place - which
     if not is_behind:
-        k = min(int((h - base) / light.spacing[0]), light.depth.shape[1] - 1)
+        k = min(int((h - base) / light.spacing[0]), light.beam.shape[1] - 1)
         j = math.floor(y / light.spacing[1]) % leaving.shape[1]
         i = math.floor(x / light.spacing[2]) % leaving.shape[2]
-        depth = float(light.depth[which, k, j, i])
+        beam = float(light.beam[which, k, j, i])
         if share > 0.0:
-            depth += share * (light.depth[which + 1, k, j, i] - depth)
-        return math.exp(-depth)
+            beam += share * (light.beam[which + 1, k, j, i] - beam)
+        return beam
     face = base if mu_s > 0.0 else top
     chord = r * r * mu_s * mu_s + (face - h) * (2.0 * radius + face + h)
     if chord < 0.0:

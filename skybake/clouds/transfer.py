@@ -52,6 +52,9 @@ class Entering(NamedTuple):
         The same by the sun.
     sun_share : ndarray of float64, shape (channel,)
         What clouds above leave of the sun.
+    clear_single, clear_diffuse : ndarray of float64, shape (channel, 2, height, direction)
+        Radiance without clouds along the downward and along the upward directions, at heights that
+        divide the layer evenly from its base to its top: what air scattered once, and the rest.
     """
 
     sun: Array
@@ -61,6 +64,8 @@ class Entering(NamedTuple):
     down: Array
     down_sun: Array
     sun_share: Array
+    clear_single: Array
+    clear_diffuse: Array
 
 
 class Scattering(NamedTuple):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -12,6 +13,9 @@ from skybake.optics.medium import Array
 
 RESOLVED = 0.5
 """Share of a pixel below which the details of clouds are left out."""
+
+ALIKE = 1.05
+"""Ratio of the sizes of pixels that are not told apart."""
 
 WHOLE = 1e-3
 """Share of a pixel on the other side of the horizon that is neglected."""
@@ -67,18 +71,17 @@ class CloudsOver:
         angle, around, extent = (
             np.broadcast_to(each, shape).ravel() for each in (zenith, azimuth, footprint)
         )
-        resolved = RESOLVED * float(np.median(extent))
-        out, opacity = self._put(pixels.reshape(-1, 3), angle, around, resolved)
+        out, opacity = self._put(pixels.reshape(-1, 3), angle, around, extent)
         above = (self._cloudscape.horizon - angle) / extent + 0.5
         is_both = (above > WHOLE) & (above < 1.0 - WHOLE)
         if is_both.any():
             out[is_both], opacity[is_both] = self._at_horizon(
-                angle[is_both], around[is_both], extent[is_both], resolved
+                angle[is_both], around[is_both], extent[is_both]
             )
         return out.reshape(pixels.shape), opacity.reshape(shape)
 
     def _at_horizon(
-        self, zenith: Array, azimuth: Array, footprint: Array, resolved: float
+        self, zenith: Array, azimuth: Array, footprint: Array
     ) -> tuple[np.ndarray, np.ndarray]:
         """Pixels that hold sky and ground: each part has its own clouds."""
         low, high = zenith - 0.5 * footprint, zenith + 0.5 * footprint
@@ -89,15 +92,23 @@ class CloudsOver:
             middle, extent = 0.5 * (begin + end), end - begin
             clear = self._clear(middle[:, None], azimuth[:, None], extent[:, None])[:, 0]
             share = (extent / footprint).astype(np.float32)
-            light, opacity = self._put(clear, middle, azimuth, resolved)
+            light, opacity = self._put(clear, middle, azimuth, footprint)
             total += share[:, None] * light
             hidden += share * opacity
         return total, hidden
 
     def _put(
-        self, pixels: np.ndarray, zenith: Array, azimuth: Array, resolved: float
+        self, pixels: np.ndarray, zenith: Array, azimuth: Array, footprint: Array
     ) -> tuple[np.ndarray, np.ndarray]:
         xyz = pixels @ self._to_xyz
         bearing = azimuth + self._sun_azimuth
-        light, opacity = self._cloudscape.put_into(xyz, zenith, bearing, resolved)
+        # Each pixel by its own size: which others are in its band must not matter.
+        classes = np.rint(np.log(footprint) / math.log(ALIKE)).astype(int)
+        light, opacity = np.empty_like(xyz), np.empty(zenith.size, np.float32)
+        for each in np.unique(classes).tolist():
+            at = np.flatnonzero(classes == each)
+            resolved = RESOLVED * ALIKE**each
+            light[at], opacity[at] = self._cloudscape.put_into(
+                xyz[at], zenith[at], bearing[at], resolved
+            )
         return light @ self._to_rgb, opacity

@@ -21,7 +21,7 @@ RADIUS = 6360.0
 def light_of(clouds):
     """Light of no matter: one voxel that is the same everywhere."""
     return LayerLight(
-        depth=np.full((1, 1, 1, 1), 0.1, np.float32),
+        beam=np.full((1, 1, 1, 1), 0.1, np.float32),
         moments=half_words(np.full((1, 1, 1, 1, 1), 0.1, np.float32)),
         spacing=np.array([clouds.top - clouds.base, *clouds.period[::-1]]),
         base=float(clouds.base),

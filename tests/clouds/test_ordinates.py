@@ -48,12 +48,16 @@ def solve(extinction, sun, order, entering, spacing=SPACING):
     return solve_diffuse(voxels, scattering, entering(quadrature), Workers(1)), voxels
 
 
+def no_air(none):
+    nothing = np.zeros((1, 2, 2, none.shape[1]))
+    return nothing, nothing
+
+
 def in_the_sun(levels):
     def entering(quadrature):
         none = np.zeros((1, len(quadrature.weight) // 2))
-        return Entering(
-            np.ones((1, levels)), none, none, none, np.zeros(1), np.zeros(1), np.ones(1)
-        )
+        sun = np.ones((1, levels))
+        return Entering(sun, none, none, none, np.zeros(1), np.zeros(1), np.ones(1), *no_air(none))
 
     return entering
 
@@ -64,7 +68,9 @@ def over_white_ground(levels):
     def entering(quadrature):
         ones = np.ones((1, len(quadrature.weight) // 2))
         dark = np.zeros((1, levels))
-        return Entering(dark, ones, ones, 0.0 * ones, np.array([math.pi]), np.zeros(1), np.ones(1))
+        none = 0.0 * ones
+        full = np.array([math.pi])
+        return Entering(dark, ones, ones, none, full, np.zeros(1), np.ones(1), *no_air(none))
 
     return entering
 
