@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from skybake.environment.environment import Environment
     from skybake.environment.load import load_environment
     from skybake.environment.resample import resample
+    from skybake.ephemeris.celestial import CelestialFrame
     from skybake.ephemeris.moment import Moment, TimeSpan, sun_at
     from skybake.ephemeris.place import SITES, Place, find_place
     from skybake.errors import (
@@ -32,11 +33,14 @@ if TYPE_CHECKING:
     )
     from skybake.image.image import Image
     from skybake.image.light import Light
+    from skybake.image.night import Night
     from skybake.image.picture_settings import PictureSettings
     from skybake.image.scene import Scene
     from skybake.image.settings import Clouds, Encoding, Lighting, MapSettings, View, map_settings
     from skybake.image.target import TARGETS, Target, TargetAxes, TargetReason, find_target
     from skybake.jit.workers import Workers
+    from skybake.luts.bake import BakedTables, bake_tables
+    from skybake.luts.settings import TableSettings
     from skybake.optics.changes import PresetChanges
     from skybake.pipeline import Pipeline, Sky
     from skybake.preset import (
@@ -92,7 +96,9 @@ __all__ = [
     "Angular",
     "ArgumentError",
     "Baked",
+    "BakedTables",
     "CancelledError",
+    "CelestialFrame",
     "CloudLayer",
     "Clouds",
     "Coefficients",
@@ -121,6 +127,7 @@ __all__ = [
     "MapLight",
     "MapSettings",
     "Moment",
+    "Night",
     "Octahedral",
     "OutputError",
     "Override",
@@ -145,6 +152,7 @@ __all__ = [
     "SkybakeError",
     "Spectrum",
     "Star",
+    "TableSettings",
     "TabulatedPhase",
     "TabulatedProfile",
     "Target",
@@ -159,6 +167,7 @@ __all__ = [
     "bake",
     "bake_orientation_chart",
     "bake_sequence",
+    "bake_tables",
     "convert",
     "default_manifest",
     "find_place",
@@ -178,7 +187,9 @@ _HOMES = {
     "Angular": "skybake.projection",
     "ArgumentError": "skybake.errors",
     "Baked": "skybake.baking",
+    "BakedTables": "skybake.luts.bake",
     "CancelledError": "skybake.errors",
+    "CelestialFrame": "skybake.ephemeris.celestial",
     "CloudLayer": "skybake.preset",
     "Clouds": "skybake.image.settings",
     "Coefficients": "skybake.preset",
@@ -207,6 +218,7 @@ _HOMES = {
     "MapLight": "skybake.sidecar.map_light",
     "MapSettings": "skybake.image.settings",
     "Moment": "skybake.ephemeris.moment",
+    "Night": "skybake.image.night",
     "Octahedral": "skybake.projection",
     "OutputError": "skybake.errors",
     "Override": "skybake.preset",
@@ -232,6 +244,7 @@ _HOMES = {
     "SkybakeError": "skybake.errors",
     "Spectrum": "skybake.preset",
     "Star": "skybake.preset",
+    "TableSettings": "skybake.luts.settings",
     "TabulatedPhase": "skybake.preset",
     "TabulatedProfile": "skybake.preset",
     "Target": "skybake.image.target",
@@ -246,6 +259,7 @@ _HOMES = {
     "bake": "skybake.baking",
     "bake_orientation_chart": "skybake.baking.orientation_chart",
     "bake_sequence": "skybake.sequence.bake",
+    "bake_tables": "skybake.luts.bake",
     "convert": "skybake.baking.convert",
     "default_manifest": "skybake.sequence.products",
     "find_place": "skybake.ephemeris.place",

@@ -49,7 +49,7 @@ def test_two_commands_set_it_up():
 def test_every_command_of_the_readme_runs(shell, script):
     assert "skybake" in script
     shell(script)
-    made = {path.suffix for path in shell.folder.iterdir()}
+    made = {path.suffix for path in shell.folder.rglob("*")}
     assert (".csv" if "probe" in script else ".exr") in made
 
 

@@ -98,7 +98,7 @@ def scene_warnings(scene: Scene, peak: float) -> list[str]:
     scene : Scene
         What it shows.
     peak : float
-        Of the sun's disc.
+        Of the sun's disc and of stars.
     """
     found = []
     if scene.sky.method == "hillaire":
@@ -107,4 +107,6 @@ def scene_warnings(scene: Scene, peak: float) -> list[str]:
         found.append(
             "the map is black: no light of the sun's disc, the only thing in it, arrives here"
         )
+    if scene.layer_names == ("stars",) and peak == 0.0:
+        found.append("the map is black: no star, of which alone it consists, is seen from here")
     return [one for one in found if one is not None]

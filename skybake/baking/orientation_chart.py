@@ -10,10 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.angles import direction_from_angles
+from skybake.baking.checks import check_targets
 from skybake.baking.held_pictures import HeldRows, write_held
 from skybake.baking.paths import map_paths
 from skybake.baking.pixel_type import fitting_pixel
-from skybake.baking.write import check_targets
 from skybake.colour.exposure import luminance_from_ev
 from skybake.formats.cube_file import is_cube_file
 from skybake.formats.spec import Attribute, MapSpec

@@ -41,6 +41,8 @@ def check_parts(path: Path, settings: MapSettings) -> None:
         raise InputError(f"{path}: {what} must be without mips")
     if lighting.sun_disc == "only":
         raise InputError(f"{path}: layers must be of a map with the sky, got only the disc")
+    if settings.night.stars == "only":
+        raise InputError(f"{path}: layers must be of a map with the sky, got only stars")
 
 
 @contextmanager
@@ -78,7 +80,7 @@ def open_parts(
 def _part_spec(name: str, whole: MapSpec, pixels: dict[str, str]) -> MapSpec:
     compression = whole.compression
     # Ringing around the disc would fill its blocks, and that of a transmittance exceed 1.
-    if name in {"sun", "transmittance"} and compression.partition(":")[0] in _LOSSY:
+    if name in {"sun", "stars", "transmittance"} and compression.partition(":")[0] in _LOSSY:
         compression = _LOSSLESS
     return replace(
         whole,
@@ -97,6 +99,6 @@ def _part_pixels(scene: Scene) -> dict[str, str]:
     return {
         "sky": sky,
         "clouds": sky,
-        "sun": "float" if wanted == "auto" else wanted,
+        **dict.fromkeys(("sun", "stars"), "float" if wanted == "auto" else wanted),
         "transmittance": "half" if wanted == "auto" else wanted,
     }

@@ -30,7 +30,7 @@ def value_range(scene: Scene, peak: float) -> tuple[float, float]:
     scene : Scene
         What the map shows.
     peak : float
-        Largest value of the sun's disc.
+        Largest value of the sun's disc and of stars.
 
     Returns
     -------
@@ -38,7 +38,8 @@ def value_range(scene: Scene, peak: float) -> tuple[float, float]:
         Of all magnitudes; of the sky's luminance, relative to white, where there is any.
     """
     if "sky" not in scene.layer_names:
-        return peak, 1.0
+        # The edges of stars fade to nothing.
+        return peak, 0.0 if "stars" in scene.layer_names else 1.0
     toward_sun = scene.evaluate(np.array([[scene.sun_zenith]]), np.zeros((1, 1)), 1e-9)
     luminance = scene.survey @ (scene.luminance / scene.settings.encoding.white_luminance)
     lit = luminance[luminance > 0.0]

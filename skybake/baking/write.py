@@ -7,17 +7,21 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
+from skybake.baking.checks import check_targets
 from skybake.baking.losses import HalfLoss, scene_warnings
 from skybake.baking.paths import default_path, map_paths
 from skybake.baking.pictures import open_pictures, write_pictures
 from skybake.baking.pixel_type import PixelType, fitting_pixel, value_range
-from skybake.errors import InputError
-from skybake.formats.cube_file import check_cube_encoding, is_cube_file
-from skybake.formats.preview import check_preview
 from skybake.formats.spec import Attribute, MapSpec
 from skybake.formats.whole_files import WholeFiles
-from skybake.formats.writer import check_map_path
-from skybake.image.light import Light, attributes_from_light, light_of_scene
+from skybake.image.light import (
+    STAR_ILLUMINANCE,
+    Light,
+    attributes_from_light,
+    eclipse_attributes,
+    light_of_scene,
+    star_attributes,
+)
 from skybake.image.picture_settings import PictureSettings
 from skybake.image.raster import Raster
 from skybake.image.recipe import recipe_attributes
@@ -61,6 +65,8 @@ class Baked(Light):
         All about the light that a renderer needs, if it was asked for.
     light_files : tuple of Path
         The files that tell it.
+    star_illuminance : float or None
+        Of the horizontal by stars; None of a map without them. [lx]
     """
 
     files: tuple[Path, ...]
@@ -74,6 +80,7 @@ class Baked(Light):
     warnings: tuple[str, ...] = ()
     map_light: MapLight | None = None
     light_files: tuple[Path, ...] = ()
+    star_illuminance: float | None = None
 
 
 def bake(
@@ -150,49 +157,6 @@ def bake(
     )
 
 
-def check_targets(
-    output: Path,
-    settings: MapSettings,
-    preview: Path | None = None,
-    light_files: Sequence[Path] = (),
-) -> None:
-    """Raise the errors of a map's files that can be found before anything is computed.
-
-    Raises
-    ------
-    InputError
-        If a suffix names no format, or the format cannot hold the map.
-    OutputError
-        If a file cannot be written under its name.
-    """
-    for path in map_paths(output, settings):
-        check_map_path(path)
-        check_encoding(path, settings)
-    if preview is not None:
-        check_preview(preview)
-    if light_files:
-        from skybake.sidecar.light_file import check_light_files
-
-        check_light_files(light_files, settings.view.projection, map_paths(output, settings))
-
-
-def check_encoding(path: Path, settings: MapSettings) -> None:
-    """Refuse a type, a compression or smaller copies that the format of a file does not have."""
-    encoding = settings.encoding
-    if is_cube_file(path):
-        check_cube_encoding(path, encoding.pixel, encoding.compression)
-    elif encoding.pixel in ("rgb9e5", "r11g11b10"):
-        raise InputError(f"{path}: pixel {encoding.pixel} must be in .ktx2")
-    if encoding.layers or settings.lighting.sun_disc == "separate":
-        from skybake.baking.parts import check_parts
-
-        check_parts(path, settings)
-    if encoding.mips:
-        from skybake.baking.mips import check_mips
-
-        check_mips(path, settings.view.projection)
-
-
 def bake_scene(
     scene: Scene,
     output: Path,
@@ -220,11 +184,13 @@ def bake_scene(
         scene.light_clouds()
     begin("pixels")
     light = light_of_scene(scene)
-    from_below = _from_below(scene)
+    from_below, starlight = _from_below(scene), star_attributes(scene)
     described = None if light_files is None else map_light(scene, light)
     attributes = {
         **attributes_from_light(light),
         **({} if from_below is None else dict(zip(FROM_BELOW, from_below, strict=True))),
+        **starlight,
+        **eclipse_attributes(scene),
         **recipe_attributes(planet, settings),
         **(attributes or {}),
     }
@@ -287,6 +253,7 @@ def bake_scene(
         warnings=tuple(warnings),
         map_light=described,
         light_files=tuple(light_files or ()),
+        star_illuminance=starlight.get(STAR_ILLUMINANCE),
     )
 
 

@@ -68,6 +68,13 @@ def _module(path: Path) -> Any:
     for name in _MODULES:
         try:
             return import_module(name)
-        except ImportError:
-            continue
+        except ModuleNotFoundError as error:
+            if error.name != name:
+                raise _unloadable(path, name, error) from error
+        except ImportError as error:
+            raise _unloadable(path, name, error) from error
     raise InputError(f"{path}: needs the Python module openvdb, which is not installed")
+
+
+def _unloadable(path: Path, name: str, error: ImportError) -> InputError:
+    return InputError(f"{path}: needs the Python module {name}, which does not load ({error})")

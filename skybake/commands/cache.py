@@ -105,6 +105,7 @@ def warm(presets: tuple[str, ...], for_all_users: bool, quiet: bool) -> None:
     check_cache()
 
     from skybake.baking.warm import compile_all, solve
+    from skybake.luts.warm import compile_kernels
     from skybake.preset import load_preset
 
     # An error in the last one is to be reported before the first is solved.
@@ -113,6 +114,7 @@ def warm(presets: tuple[str, ...], for_all_users: bool, quiet: bool) -> None:
     say("compiling kernels")
     solve(presets, say)
     compile_all()
+    compile_kernels()
     if for_all_users:
         share_cache()
     if not quiet:

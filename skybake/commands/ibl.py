@@ -20,6 +20,9 @@ from skybake.commands.options.lighting_settings import (
 )
 from skybake.commands.options.observer import (
     altitude_option,
+    moon_from_options,
+    moon_needs,
+    moon_options,
     positions,
     sun_azimuth_option,
     sun_distance_needs,
@@ -67,6 +70,7 @@ def _prefix(_: click.Context, __: click.Parameter, value: str | None) -> Path | 
 @sun_azimuth_option()
 @moment_options
 @sun_distance_option()
+@moon_options("--time")
 @altitude_option()
 @clouds_options()
 @click.option(
@@ -113,6 +117,7 @@ def ibl(**options: Any) -> None:
         dict.fromkeys(of_sky, (False, "cannot be combined with --input")),
         moment_needs(context),
         sun_distance_needs(options, is_timed=is_timed, time="--time"),
+        moon_needs(options, is_timed=is_timed, time="--time"),
         lighting_needs(options, program),
     )
     maps, form = lighting_from_options(options, program)
@@ -168,7 +173,9 @@ def _of_sky(
     planet = world_from_options(context)
     check_clouds(context, planet)
     distance = sun_distance(planet, moment, options["sun_distance"])
-    settings = replace(settings, lighting=replace(settings.lighting, sun_distance=distance))
+    moon = moon_from_options(options, planet, moment, distance)
+    lighting = replace(settings.lighting, sun_distance=distance, moon=moon)
+    settings = replace(settings, lighting=lighting)
     output = options["output"] or _default_prefix(default_path(planet, settings))
     if not options["quiet"]:
         announce(output)

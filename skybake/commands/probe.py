@@ -19,6 +19,9 @@ from skybake.commands.options.clouds import (
 )
 from skybake.commands.options.observer import (
     altitude_option,
+    moon_from_options,
+    moon_needs,
+    moon_options,
     sun_azimuth_option,
     sun_distance_needs,
     sun_distance_option,
@@ -50,6 +53,7 @@ def _wavelengths(text: str) -> tuple[float, ...]:
 @sun_azimuth_option()
 @moment_options
 @sun_distance_option()
+@moon_options("--time")
 @altitude_option()
 @clouds_options()
 @click.option(
@@ -114,6 +118,7 @@ def probe(**options: Any) -> None:
         context,
         moment_needs(context),
         sun_distance_needs(options, is_timed=is_timed, time="--time"),
+        moon_needs(options, is_timed=is_timed, time="--time"),
     )
     moment = moment_from_options(context)
 
@@ -146,12 +151,14 @@ def probe(**options: Any) -> None:
         )
         if warning is not None:
             warn(warning)
+    distance = sun_distance(planet, moment, options["sun_distance"])
     text = probe(
         planet,
         directions,
         sun_elevation=sun_elevation,
         sun_azimuth=options["sun_azimuth"] if moment is None else moment.sun_azimuth,
-        sun_distance=sun_distance(planet, moment, options["sun_distance"]),
+        sun_distance=distance,
+        moon=moon_from_options(options, planet, moment, distance),
         altitude=options["altitude"],
         wavelengths=None if wavelengths is None else np.array(wavelengths),
         per_irradiance=options["per_irradiance"],

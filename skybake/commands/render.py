@@ -13,8 +13,17 @@ from skybake.commands.memory import check_memory
 from skybake.commands.options import choices, values
 from skybake.commands.options.clouds import check_clouds, clouds_options
 from skybake.commands.options.maps import map_needs, map_options, map_settings
+from skybake.commands.options.night import (
+    lst_option,
+    night_from_options,
+    night_needs,
+    night_options,
+)
 from skybake.commands.options.observer import (
     altitude_option,
+    moon_from_options,
+    moon_needs,
+    moon_options,
     positions,
     sun_azimuth_option,
     sun_distance_needs,
@@ -41,7 +50,10 @@ from skybake.commands.printing.progress import map_progress
 @sun_azimuth_option()
 @moment_options
 @sun_distance_option()
+@moon_options("--time")
 @altitude_option()
+@night_options
+@lst_option
 @clouds_options()
 @map_options
 @click.option(
@@ -89,6 +101,8 @@ def render(**options: Any) -> None:
         context,
         moment_needs(context),
         sun_distance_needs(options, is_timed=is_timed, time="--time"),
+        moon_needs(options, is_timed=is_timed, time="--time"),
+        night_needs(options, is_timed=is_timed, time="--time"),
         map_needs(options),
         preview_needs(options),
     )
@@ -100,6 +114,7 @@ def render(**options: Any) -> None:
     settings = map_settings(
         options,
         **positions(options, moment),
+        night=night_from_options(options, moment),
     )
 
     from skybake.baking import bake, default_path, late_kernels
@@ -109,7 +124,9 @@ def render(**options: Any) -> None:
     planet = world_from_options(context)
     check_clouds(context, planet)
     distance = sun_distance(planet, moment, options["sun_distance"])
-    settings = replace(settings, lighting=replace(settings.lighting, sun_distance=distance))
+    moon = moon_from_options(options, planet, moment, distance)
+    lighting = replace(settings.lighting, sun_distance=distance, moon=moon)
+    settings = replace(settings, lighting=lighting)
     output = options["output"] or default_path(planet, settings)
     preview = preview_beside(output) if options["preview"] == BESIDE else options["preview"]
     quiet = options["quiet"]

@@ -21,8 +21,11 @@ from skybake.commands.options.emit import (
     is_asked,
 )
 from skybake.commands.options.maps import map_needs, map_options, map_settings
+from skybake.commands.options.night import night_from_options, night_needs, night_options
 from skybake.commands.options.observer import (
     altitude_option,
+    moon_needs,
+    moon_options,
     sun_azimuth_option,
     sun_distance_needs,
     sun_distance_option,
@@ -57,7 +60,9 @@ SOME_FAILED = 3
 @sun_azimuth_option(is_range=True)
 @span_options
 @sun_distance_option()
+@moon_options("--from and --to")
 @altitude_option(is_range=True)
+@night_options
 @clouds_options(is_range=True)
 @click.option(
     "--frames",
@@ -147,10 +152,13 @@ def sequence(**options: Any) -> None:
     check_memory()
     started = time.perf_counter()
     context = click.get_current_context()
+    is_timed, times = options["start"] is not None, "--from and --to"
     check_needs(
         context,
         span_needs(context),
-        sun_distance_needs(options, is_timed=options["start"] is not None, time="--from and --to"),
+        sun_distance_needs(options, is_timed=is_timed, time=times),
+        moon_needs(options, is_timed=is_timed, time=times),
+        night_needs(options, is_timed=is_timed, time=times),
         map_needs(options),
         preview_needs(options),
         emit_needs(options),
@@ -212,7 +220,12 @@ def _plan_from_options(context: click.Context) -> Plan:
     """
     options = context.params
     times = span_from_options(context)
-    settings = map_settings(options, clouds_quality=options["clouds_quality"])
+    settings = map_settings(
+        options,
+        clouds_quality=options["clouds_quality"],
+        moon=options["moon"],
+        night=night_from_options(options),
+    )
     changes = changes_from_options(context)
 
     from skybake.sequence.planning import plan_sequence
@@ -227,6 +240,7 @@ def _plan_from_options(context: click.Context) -> Plan:
             sun_azimuth=options["sun_azimuth"] if times is None else None,
             altitude=options["altitude"],
             sun_distance=options["sun_distance"],
+            eclipses=options["eclipse"] != "off",
             changes=replace(changes, values=ranges),
             settings=settings,
             exposure_curve=options["exposure_curve"],

@@ -48,7 +48,7 @@ def sun_position(time: datetime, place: Place) -> tuple[float, float]:
 
 def sun_distance(time: datetime) -> float:
     """Return how far the sun is from the centre of Earth, by libastro's VSOP87. [au]"""
-    sun = ephem.Sun(_days(time))
+    sun = ephem.Sun(ephem_days(time))
     return float(sun.earth_distance)
 
 
@@ -56,6 +56,12 @@ def hour_angle(time: datetime, place: Place) -> float:
     """Return how far the sun has moved past the upper meridian, -pi to pi. [rad]"""
     sun, observer = _observe(time, place)
     return math.remainder(observer.sidereal_time() - sun.ra, 2.0 * math.pi)
+
+
+def sidereal_time(time: datetime, place: Place) -> float:
+    """Return the apparent right ascension of what culminates, 0 to 2 pi. [rad]"""
+    _, observer = _observe(time, place)
+    return float(observer.sidereal_time())
 
 
 def refraction(elevation: float) -> float:
@@ -93,9 +99,10 @@ def _observe(time: datetime, place: Place) -> tuple[ephem.Sun, ephem.Observer]:
     observer = ephem.Observer()
     observer.pressure = 0.0
     observer.lat, observer.lon = place.latitude, place.longitude
-    observer.date = _days(time)
+    observer.date = ephem_days(time)
     return ephem.Sun(observer), observer
 
 
-def _days(time: datetime) -> float:
+def ephem_days(time: datetime) -> float:
+    """Return a time as PyEPHEM counts it. [d]"""
     return (time - _DUBLIN_EPOCH) / timedelta(days=1)

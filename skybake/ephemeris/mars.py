@@ -24,7 +24,10 @@ _DAY = timedelta(days=1)
 _TURN = 2.0 * math.pi
 
 _SIN_OBLIQUITY = 0.42565
-_EQUATORIAL_RADIUS, _POLAR_RADIUS = 3396.19, 3376.20
+OBLIQUITY = math.asin(_SIN_OBLIQUITY)
+"""Of the equator to the orbit. [rad]"""
+
+EQUATORIAL_RADIUS, POLAR_RADIUS = 3396.19, 3376.20
 """Of the ellipsoid of IAU 2000 (Seidelmann et al. 2002). [km]"""
 
 # Amplitude [deg], period [Julian years] and phase [deg] of perturbations by other planets.
@@ -153,7 +156,7 @@ def declination(solar_longitude: float) -> float:
 
 def planetographic_latitude(latitude: float) -> float:
     """Angle of the vertical from the plane of the equator, of a planetocentric latitude. [rad]"""
-    squared = (_POLAR_RADIUS / _EQUATORIAL_RADIUS) ** 2
+    squared = (POLAR_RADIUS / EQUATORIAL_RADIUS) ** 2
     return math.atan2(math.sin(latitude), squared * math.cos(latitude))
 
 

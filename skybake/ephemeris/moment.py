@@ -7,13 +7,16 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from datetime import date, datetime, timedelta, tzinfo
 
+from skybake.ephemeris.celestial import CelestialFrame
 from skybake.ephemeris.clock import Clock, argument
 from skybake.ephemeris.earth import sun_distance, sun_position
 from skybake.ephemeris.horizon import Horizon
 from skybake.ephemeris.local_clock import local_text, utc_text
 from skybake.ephemeris.mars import distance_in_season, mars_time, sun_in_season
+from skybake.ephemeris.moon import Moon
 from skybake.ephemeris.place import Place
 from skybake.ephemeris.season import DAY
+from skybake.ephemeris.sidereal import frame_at, frame_in_season
 from skybake.ephemeris.times import MAX_STEPS, steps
 from skybake.errors import ArgumentError
 from skybake.units import degrees
@@ -42,6 +45,10 @@ class Moment:
         From the planet then. [au]
     attributes : mapping of str to str or float
         Time and place as files state them, see docs/formats.md.
+    moon : Moon or None
+        The moon that is nearest to the sun; None in a season of Mars, which has no date.
+    celestial : CelestialFrame or None
+        How the stars stand.
     """
 
     time: datetime | None
@@ -51,6 +58,13 @@ class Moment:
     sun_azimuth: float
     sun_distance: float
     attributes: Mapping[str, str | float]
+    moon: Moon | None = None
+    celestial: CelestialFrame | None = None
+
+    @property
+    def is_refracted(self) -> bool:
+        """Whether the sun is where refraction shows it, and stars have to be as well."""
+        return "skybake:refraction" in self.attributes
 
 
 def sun_at(
@@ -198,23 +212,45 @@ def _at(time: datetime, zone: tzinfo | None, place: Place, horizon: Horizon) -> 
         sun = sun_in_season(now.solar_longitude, hour_angle, place.latitude)
         attributes["skybake:solarLongitude"] = degrees(now.solar_longitude)
         attributes["skybake:trueSolarTime"] = _clock_text((hour_angle / (2 * math.pi) + 0.5) * DAY)
-        return Moment(time, label, place, *sun, now.sun_distance, attributes)
+        return Moment(
+            time,
+            label,
+            place,
+            *sun,
+            now.sun_distance,
+            attributes,
+            _moon(time, place, horizon, *sun),
+            frame_at(time, place),
+        )
     elevation, azimuth = sun_position(time, place)
     if horizon.refraction:
         lift = horizon.lift(elevation)
         elevation += lift
         attributes["skybake:refraction"] = degrees(lift)
-    return Moment(time, label, place, elevation, azimuth, sun_distance(time), attributes)
+    sun = elevation, azimuth
+    moon = _moon(time, place, horizon, *sun)
+    distance, stars = sun_distance(time), frame_at(time, place)
+    return Moment(time, label, place, *sun, distance, attributes, moon, stars)
+
+
+def _moon(time: datetime, place: Place, horizon: Horizon, elevation: float, azimuth: float) -> Moon:
+    # Kept out of what asks for no moment, since it needs arrays.
+    from skybake.ephemeris.moons import moon_before_sun
+
+    return moon_before_sun(time, place, horizon.altitude, azimuth, elevation)
 
 
 def _in_season(season: float, seconds: float, place: Place) -> Moment:
     """Return the moment of a local true solar time on Mars. [s]"""
-    sun = sun_in_season(season, 2 * math.pi * (seconds / DAY - 0.5), place.latitude)
+    hour_angle = 2 * math.pi * (seconds / DAY - 0.5)
+    sun = sun_in_season(season, hour_angle, place.latitude)
     attributes = _attributes(None, place)
     attributes["skybake:solarLongitude"] = degrees(season)
     attributes["skybake:trueSolarTime"] = text = _clock_text(seconds)
     label = f"Ls {degrees(season):g} {text}"
-    return Moment(None, label, place, *sun, distance_in_season(season), attributes)
+    stars = frame_in_season(season, hour_angle, place.latitude)
+    distance = distance_in_season(season)
+    return Moment(None, label, place, *sun, distance, attributes, celestial=stars)
 
 
 def _attributes(time: datetime | None, place: Place) -> dict[str, str | float]:

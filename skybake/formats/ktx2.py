@@ -8,29 +8,18 @@ KTX File Format Specification 2.0, registry.khronos.org/KTX/specs/2.0/ktxspec.v2
 from __future__ import annotations
 
 import math
-import struct
-import sys
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import BinaryIO
 
 from skybake.formats.cube_levels import Level, check_levels
-from skybake.formats.ktx2_descriptor import data_format_descriptor
-from skybake.formats.spec import Attribute, attribute_text
+from skybake.formats.ktx2_container import INDEX_AT, beginning, compress, index_entry
+from skybake.formats.spec import Attribute
 from skybake.formats.targets import faults_of
 from skybake.formats.texels import TexelFormat, encode_texels, find_texel_format
 from skybake.formats.whole_files import WholeFiles
 from skybake.jit.workers import ALL_CPUS, Workers
-from skybake.version import __version__
-
-_IDENTIFIER = bytes.fromhex("AB4B5458203230BB0D0A1A0A")
-_NO_COMPRESSION, _ZSTD = 0, 2
-_HEADER = struct.Struct("<12s9I4I2Q")
-_LEVEL = struct.Struct("<3Q")
-
-ZSTD_LEVEL = 3
-"""Level of the compression: of a sky higher ones save some percent in several times the time."""
 
 
 def write_ktx2(
@@ -79,26 +68,22 @@ def write_ktx2(
         If the shapes of levels are others, or an attribute has a name that KTX reserves.
     """
     form, edge = find_texel_format(pixel), check_levels(levels)
-    pairs = dict(attributes or {})
-    descriptor = data_format_descriptor(form, str(pairs.get("colorInteropID", "")))
-    values = _key_values(pairs)
-    descriptor_at = _HEADER.size + _LEVEL.size * len(levels)
-    values_at = descriptor_at + len(descriptor)
-    header = _HEADER.pack(
-        _IDENTIFIER,
-        *(form.vulkan, form.unit, edge, edge, 0, 0, 6, len(levels)),
-        _ZSTD if zstd else _NO_COMPRESSION,
-        *(descriptor_at, len(descriptor), values_at, len(values)),
-        *(0, 0),
+    start = beginning(
+        form,
+        (edge, edge, 0),
+        faces=6,
+        levels=len(levels),
+        zstd=zstd,
+        attributes=dict(attributes or {}),
     )
     with ExitStack() as stack:
         if files is None:
             files = stack.enter_context(WholeFiles())
         temporary = files.add(path)
         with faults_of(path), temporary.open("wb") as file:
-            file.write(header + bytes(descriptor_at - len(header)) + descriptor + values)
+            file.write(start)
             index, negative = _write_levels(file, path, levels, form, zstd, workers)
-            file.seek(len(header))
+            file.seek(INDEX_AT)
             file.write(index)
     return negative
 
@@ -121,31 +106,9 @@ def _write_levels(
             faces.append(texels.tobytes())
             negative += lost
         plain = b"".join(faces)
-        stored = _compress(plain) if zstd else plain
+        stored = compress(plain) if zstd else plain
         if not zstd:
             file.write(bytes(-file.tell() % math.lcm(form.size, 4)))
-        entries.insert(0, _LEVEL.pack(file.tell(), len(stored), len(plain)))
+        entries.insert(0, index_entry(file.tell(), len(stored), len(plain)))
         file.write(stored)
     return b"".join(entries), negative
-
-
-def _key_values(attributes: Mapping[str, Attribute]) -> bytes:
-    """Return the key/value pairs, in the order of their keys and each padded to 4 bytes."""
-    for key in attributes:
-        if key.lower().startswith("ktx") or "\0" in key or not key:
-            raise ValueError(f"key must not be one that KTX reserves, got {key!r}")
-    texts = {key: attribute_text(value) for key, value in attributes.items()}
-    texts |= {"KTXorientation": "rd", "KTXwriter": f"skybake {__version__}"}
-    pairs = b""
-    for key in sorted(texts):
-        pair = f"{key}\0{texts[key]}\0".encode()
-        pairs += struct.pack("<I", len(pair)) + pair + bytes(-len(pair) % 4)
-    return pairs
-
-
-def _compress(plain: bytes) -> bytes:
-    if sys.version_info >= (3, 14):
-        from compression import zstd
-    else:
-        import zstandard as zstd
-    return zstd.compress(plain, level=ZSTD_LEVEL)

@@ -10,7 +10,13 @@ import numpy as np
 
 from skybake.formats.preview import DEFAULT_VIEW, png_bytes
 from skybake.image.layers import Pixels
-from skybake.image.light import Light, attributes_from_light, light_of_scene
+from skybake.image.light import (
+    Light,
+    attributes_from_light,
+    eclipse_attributes,
+    light_of_scene,
+    star_attributes,
+)
 from skybake.image.meter import scene_ev, scene_white
 from skybake.image.picture import PREVIEW_WIDTH, CodeValues, code_values
 from skybake.image.picture_settings import PictureSettings, WhiteBalance
@@ -141,6 +147,8 @@ def image_of_scene(scene: Scene, progress: Callable[[float], None] | None = None
         light=light,
         metadata={
             **attributes_from_light(light),
+            **eclipse_attributes(scene),
+            **star_attributes(scene),
             **recipe_attributes(scene.planet, scene.settings),
         },
     )

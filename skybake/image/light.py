@@ -24,6 +24,10 @@ _ATTRIBUTES = {
 }
 
 
+STAR_ILLUMINANCE = "skybake:starIlluminance"
+"""Attribute of maps with stars: of the horizontal by them. [lx]"""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Light:
     """What light a map holds.
@@ -66,6 +70,27 @@ def light_of_scene(scene: Scene) -> Light:
 def attributes_from_light(light: Light) -> dict[str, Attribute]:
     """Return the attributes of a map's files."""
     return {name: getattr(light, field) for field, name in _ATTRIBUTES.items()}
+
+
+def eclipse_attributes(scene: Scene) -> dict[str, Attribute]:
+    """Return the attributes of a map's files that tell of an eclipse, none without one."""
+    eclipse = scene.sky.eclipse
+    if eclipse is None:
+        return {}
+    return {
+        "skybake:eclipse": eclipse.phase.name,
+        "skybake:eclipseMagnitude": eclipse.phase.magnitude,
+        "skybake:eclipseObscuration": eclipse.phase.obscuration,
+    }
+
+
+def star_attributes(scene: Scene) -> dict[str, float]:
+    """Return the attributes of a map's files that tell of its stars, none without any."""
+    if scene.stars is None:
+        return {}
+    from skybake.image.starry import star_illuminance
+
+    return {STAR_ILLUMINANCE: star_illuminance(scene, scene.stars)}
 
 
 def light_from_attributes(attributes: Mapping[str, Any]) -> Light:

@@ -8,8 +8,12 @@ from skybake.colour.exposure import auto_ev
 from skybake.colour.white_balance import Array, automatic_white, white_from_kelvin
 from skybake.image.picture_settings import PictureSettings, white_balance_of
 from skybake.image.raster import Raster, sky_pixels
-from skybake.image.scene import SURVEY_ROWS, Scene
+from skybake.image.scene import Scene
+from skybake.image.survey import SURVEY_ROWS
 from skybake.projection import Projection
+
+DARKEST_NIGHT = -10.5
+"""Least exposure value of a picture with stars: that for a natural sky without a moon."""
 
 NO_LIGHT = 1e-12
 """Of the star's illuminance above the atmosphere, below which what falls on the ground is
@@ -36,7 +40,8 @@ def scene_ev(scene: Scene, projection: Projection | None = None) -> float:
     else:
         pixels = Raster(scene, canvas).rows(0, height)
     zenith, _ = chart.angles(0, height)
-    return auto_ev(pixels @ scene.luminance, chart.solid_angles(0, height), zenith <= np.pi / 2.0)
+    ev = auto_ev(pixels @ scene.luminance, chart.solid_angles(0, height), zenith <= np.pi / 2.0)
+    return ev if scene.stars is None else max(ev, DARKEST_NIGHT)
 
 
 def scene_white(scene: Scene, settings: PictureSettings) -> Array | None:

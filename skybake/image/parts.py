@@ -1,10 +1,10 @@
 """Parts of a map that are kept in one file, and add up to it.
 
 They are ``beauty``, the map as it is without parts; ``sky``; ``clouds``, premultiplied, with an
-alpha that says how much of the sky they hide; ``sun``, the disc; and ``transmittance`` of air and
-clouds to space. With all of them::
+alpha that says how much of the sky they hide; ``sun``, the disc; ``stars``, through air and clouds;
+and ``transmittance`` of air and clouds to space. With all of them::
 
-    beauty = sky * (1 - clouds.A) + clouds + sun
+    beauty = sky * (1 - clouds.A) + clouds + sun + stars
 
 and without `sun` in `beauty` if the disc is separate.
 """
@@ -26,15 +26,18 @@ def part_names(scene: Scene) -> tuple[str, ...]:
     The first of them is what a program shows that reads no others.
     """
     lighting, encoding = scene.settings.lighting, scene.settings.encoding
-    if lighting.sun_disc == "only" or not (encoding.layers or lighting.sun_disc == "separate"):
+    shows_sky = lighting.sun_disc != "only" and scene.settings.night.stars != "only"
+    if not shows_sky or not (encoding.layers or lighting.sun_disc == "separate"):
         return ("beauty",)
+    has_stars = encoding.layers and scene.stars is not None
     has_clouds = encoding.layers and scene.cloudscape is not None
-    has_beauty = encoding.layers and (has_clouds or lighting.sun_disc == "include")
+    has_beauty = encoding.layers and (has_clouds or has_stars or lighting.sun_disc == "include")
     is_there = {
         "beauty": has_beauty,
         "sky": True,
         "clouds": has_clouds,
         "sun": lighting.sun_disc != "exclude",
+        "stars": has_stars,
         "transmittance": lighting.sun_disc == "separate",
     }
     return tuple(name for name, there in is_there.items() if there)
@@ -72,11 +75,16 @@ def band_parts(raster: Raster, scene: Scene, first: int, last: int) -> tuple[Pix
         found["sky"] = clear if "clouds" in names else clouded
     else:
         found["sky"] = clouded = _clamped(raster.band("sky", first, last), clamps)
-    if "sun" in names:
-        found["sun"] = _clamped(raster.band("sun", first, last), clamps)
+    found |= {
+        name: _clamped(raster.band(name, first, last), clamps)
+        for name in ("sun", "stars")
+        if name in names
+    }
     if "beauty" in names:
         is_whole = scene.settings.lighting.sun_disc == "include"
         found["beauty"] = clouded + found["sun"] if is_whole else clouded
+        if "stars" in found:
+            found["beauty"] = found["beauty"] + found["stars"]
     if "transmittance" in names:
         through = _clamped(raster.band("transmittance", first, last), clamps)
         found["transmittance"] = through if hidden is None else through * (1.0 - hidden)

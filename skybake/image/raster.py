@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,14 +13,18 @@ from skybake.image.scene import Scene
 from skybake.image.splat import Splat
 from skybake.projection.chart import Canvas, Chart, Part
 
+if TYPE_CHECKING:
+    from skybake.image.starry import StarSpots
+
 CHANNELS = {
     "sky": RGB,
     "sun": RGB,
     "apart": (*RGB, "clouded.R", "clouded.G", "clouded.B", "A"),
     "transmittance": RGB,
+    "stars": RGB,
 }
 """Layers that a raster fills: the sky with its clouds; the sun's disc; the clear sky, the sky with
-its clouds, and the share that they hide; and the transmittance of the air to space."""
+its clouds, and the share that they hide; the transmittance of the air to space; and stars."""
 
 Evaluate = Callable[[np.ndarray, np.ndarray, np.ndarray], Pixels]
 
@@ -40,14 +45,14 @@ class Raster:
     Attributes
     ----------
     peak : float
-        Largest value that the sun's disc adds to a pixel.
+        Largest value that the sun's disc or a star adds to a pixel.
     """
 
     def __init__(self, scene: Scene, canvas: Canvas) -> None:
         self._scene = scene
         self.canvas = canvas
         self._shown = [_Shown(scene, part) for part in canvas.parts]
-        self.peak = max(each.sun.peak for each in self._shown)
+        self.peak = max(each.peak for each in self._shown)
 
     def rows(self, first: int, last: int) -> Pixels:
         """Light of all layers in the rows first..last, shape (last - first, width, 3)."""
@@ -89,12 +94,17 @@ class _Shown:
     def __init__(self, scene: Scene, part: Part) -> None:
         self._scene, self._part = scene, part
         self._chart = part.chart
-        self.sun = Splat(scene, part.chart)
+        self._points: dict[str, Splat | StarSpots] = {"sun": Splat(scene, part.chart)}
+        if "stars" in scene.layer_names:
+            from skybake.image.starry import StarSpots
+
+            self._points["stars"] = StarSpots(scene, part.chart)
+        self.peak = max(each.peak for each in self._points.values())
 
     def plane(self, name: str, first: int, last: int) -> Layer | None:
         """Return a layer of the chart's rows first..last, or None where it is black."""
-        if name == "sun":
-            begin, pixels = self.sun.rows(first, last)
+        if name in self._points:
+            begin, pixels = self._points[name].rows(first, last)
             return Layer(name, RGB, begin, pixels) if len(pixels) else None
         evaluate = _EVALUATE[name]
         pixels = evaluate(self._scene, self._chart, first, last)

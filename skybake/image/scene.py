@@ -9,50 +9,32 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from skybake.colour.space import luminance_weights, rgb_from_xyz
-from skybake.errors import InputError, UnsolvableError
+from skybake.errors import InputError
 from skybake.image.horizontal import horizontal_irradiance
 from skybake.image.luminous import luminous_weights
 from skybake.image.settings import MapSettings
 from skybake.image.stages import Stages
 from skybake.image.sun_size import drawn_radius
+from skybake.image.survey import SURVEY_ROWS, Survey, survey_directions
 from skybake.jit.arguments import flatten
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.medium import Array
 from skybake.preset import Planet
 from skybake.projection.cells import Cells
-from skybake.projection.equirect import column_bearings, row_zeniths
 from skybake.sky.disc import Disc
 from skybake.sky.drawn_disc import DrawnDisc
 from skybake.sky.pixels import allocate_pixels, fill_directions
 from skybake.sky.sky import Sky
-from skybake.sky.spectral_table import radiance_at_nodes
 from skybake.sky.table import FoldedTable
 
 if TYPE_CHECKING:
     from skybake.clouds.cloudscape import Cloudscape
     from skybake.image.cloudy import CloudsOver
-
-SURVEY_ROWS = 256
-"""Rows of an equirect map by which the light of a scene is judged."""
-
-ROUNDING = 1e-6
-"""Of the brightest luminance: what single precision leaves below 0 where there is no light."""
-
-DARK = 1e-9
-"""Of the luminance of a white surface in full sun, below which a negative one is none: on Earth a
-fifth of that of the sky in a dark night."""
-
-UNDERSHOOT = 0.01
-"""Of the brightest luminance: the most that cubics may be below 0; it is 0 then."""
+    from skybake.image.eclipsed import LeftShare
+    from skybake.image.night_glow import NightGlow
+    from skybake.night.stars import Stars
 
 CELLS_AT_ONCE = 32768
-
-_LAYERS = {
-    "include": ("sky", "sun"),
-    "exclude": ("sky",),
-    "only": ("sun",),
-    "separate": ("sky", "sun"),
-}
 
 
 class Scene:
@@ -87,6 +69,7 @@ class Scene:
             settings.view.altitude,
             sun_azimuth=settings.lighting.sun_azimuth,
             sun_distance=settings.lighting.sun_distance,
+            moon=settings.lighting.moon,
             method=settings.lighting.method,
             workers=workers,
         )
@@ -142,7 +125,7 @@ class Scene:
     @property
     def table(self) -> FoldedTable:
         """The sky as a table of pixel values."""
-        return self._surveyed[0]
+        return self._surveyed.table
 
     @cached_property
     def cloudscape(self) -> Cloudscape | None:
@@ -160,10 +143,33 @@ class Scene:
             workers=self.workers,
         )
 
+    @cached_property
+    def stars(self) -> Stars | None:
+        """The stars over the observer, or None where none are seen."""
+        if not self.settings.night.shows_stars:
+            return None
+        from skybake.image.starry import visible_stars
+
+        return visible_stars(self)
+
+    @cached_property
+    def night_glow(self) -> NightGlow | None:
+        """The light of the sky between the stars, or None where none is seen."""
+        if not self.settings.night.shows_glow:
+            return None
+        from skybake.image.night_glow import visible_glow
+
+        return visible_glow(self)
+
     def light_clouds(self) -> None:
         """Solve for the light of clouds, which takes longest, before pixels show them."""
         if self.cloudscape is not None:
             _ = self.cloudscape.nodes
+
+    @property
+    def clear_survey(self) -> np.ndarray:
+        """As `survey`, without clouds and lights of the night."""
+        return self._surveyed.pixels
 
     @cached_property
     def survey(self) -> np.ndarray:
@@ -174,72 +180,32 @@ class Scene:
         UnsolvableError
             If its luminance is negative beyond rounding, or not finite.
         """
+        if self.cloudscape is None and self.night_glow is None:
+            return self.clear_survey
         if self.cloudscape is None:
-            return self._surveyed[1]
-        rows = SURVEY_ROWS // 2
-        coarse = self.evaluate(
-            row_zeniths(rows)[:, None], column_bearings(2 * rows)[None], math.pi / rows
-        )
+            return self.evaluate(*survey_directions())
+        coarse = self.evaluate(*survey_directions(SURVEY_ROWS // 2))
         return np.repeat(np.repeat(coarse, 2, axis=0), 2, axis=1)
 
     @cached_property
-    def _surveyed(self) -> tuple[FoldedTable, np.ndarray]:
-        """The table and its survey.
-
-        Where few azimuths ring at a sharp shadow the table has all of them, and where cubics
-        swing far below 0 beside its edge, between rays that are sound, it is linear.
-        """
-        table = self._stages.folded_table(self.sky, self.rgb_weights)
-        survey = self._survey(table)
-        least, most = self._range(survey, self.luminance)
-        if least < -self._rounding(most):
-            table = self._stages.folded_table(self.sky, self.rgb_weights, finely=True)
-            survey = self._survey(table)
-            least, most = self._range(survey, self.luminance)
-            if least < -self._rounding(most) and self._has_sound_rays():
-                if least < -UNDERSHOOT * most:
-                    table = table._replace(is_linear=True)
-                    survey = self._survey(table)
-                    least, most = self._range(survey, self.luminance)
-                least = 0.0 if least > -UNDERSHOOT * most else least
-        if least < -self._rounding(most):
-            raise UnsolvableError(
-                "light: luminance must be at least 0 beside a brightest one of "
-                f"{most:.3g} cd/m2, got {least:.3g}; the atmosphere is beyond what the method "
-                "resolves"
-            )
-        return table, survey
-
-    def _survey(self, table: FoldedTable) -> np.ndarray:
-        zenith = row_zeniths(SURVEY_ROWS)[:, None]
-        azimuth = column_bearings(2 * SURVEY_ROWS)[None]
-        return self._evaluate(table, zenith, azimuth, math.pi / SURVEY_ROWS)
-
-    def _has_sound_rays(self) -> bool:
-        """Whether the rays that the table interpolates between bring no negative light."""
-        table = self._stages.spectral_table(self.sky, finely=True)
-        radiance = radiance_at_nodes(table, self.sky.skylight.phase)
-        least, most = self._range(radiance, self.xyz_weights[:, 1])
-        return least >= -self._rounding(most)
-
-    def _range(self, values: np.ndarray, weights: Array) -> tuple[float, float]:
-        """Return the least and the greatest luminance, the sum of values times weights. [cd m⁻²]"""
-        with np.errstate(invalid="ignore"):
-            luminance = values @ weights
-        least, most = float(luminance.min()), float(luminance.max())
-        if not math.isfinite(least) or not math.isfinite(most):
-            raise UnsolvableError(f"light: luminance must be finite, got {least + most}")
-        return least, most
-
-    def _rounding(self, brightest: float) -> float:
-        """Luminance below which a negative one is none. [cd m⁻²]"""
-        white = float(self.xyz_weights[:, 1].sum()) / math.pi
-        return max(ROUNDING * brightest, DARK * white)
+    def _surveyed(self) -> Survey:
+        return Survey(
+            self.sky,
+            self._stages,
+            rgb_weights=self.rgb_weights,
+            xyz_weights=self.xyz_weights,
+            luminance=self.luminance,
+            evaluate=self._evaluate,
+        )
 
     @property
     def layer_names(self) -> tuple[str, ...]:
         """Layers that a map of the scene holds."""
-        return _LAYERS[self.settings.lighting.sun_disc]
+        if self.settings.night.stars == "only":
+            return ("stars",)
+        disc = self.settings.lighting.sun_disc
+        names = ("sun",) if disc == "only" else ("sky",) if disc == "exclude" else ("sky", "sun")
+        return (*names, "stars") if "sky" in names and self.stars is not None else names
 
     @property
     def luminance(self) -> Array:
@@ -291,8 +257,9 @@ class Scene:
     @cached_property
     def _sky_on_horizontal(self) -> Array:
         """Irradiance of the horizontal by the sky, in pixel values, shape (3,). [sr]"""
-        # Without clouds both sides of the sun are alike.
-        return horizontal_irradiance(self.evaluate, is_even=self.cloudscape is None)
+        # Without clouds, an eclipse or a night both sides of the sun are alike.
+        is_even = self.cloudscape is None and self.sky.eclipse is None and self.night_glow is None
+        return horizontal_irradiance(self.evaluate, is_even=is_even)
 
     def evaluate(self, zenith: Array, azimuth: Array, footprint: Array | float) -> np.ndarray:
         """Pixel values of the sky, see `fill_directions`, shape (row, column, 3).
@@ -314,6 +281,8 @@ class Scene:
         # The least value is found 50 times as fast as luminances are.
         if pixels.min(initial=0.0) < 0.0 or weights.min() < 0.0:
             pixels[pixels @ weights < 0.0] = 0.0
+        if self.night_glow is not None:
+            self.night_glow.add(zenith, azimuth, footprint, pixels)
         return pixels
 
     def clouds_over(self, cloudscape: Cloudscape) -> CloudsOver:
@@ -339,4 +308,15 @@ class Scene:
             fill_directions(*pixels, first, last, scratch, out[first:last])
 
         self.workers.run_rows(rows, work, chunk=128 // self.workers.shares(8))
+        if self._left_share is not None:
+            self._left_share.dim(zenith, azimuth, out, self.workers)
         return out
+
+    @cached_property
+    def _left_share(self) -> LeftShare | None:
+        """What an eclipse leaves of the light in each direction, if there is one."""
+        if self.sky.eclipse is None:
+            return None
+        from skybake.image.eclipsed import left_share
+
+        return left_share(self.sky.eclipse, self.xyz_weights, self.settings.encoding.space)

@@ -5,15 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from skybake.colour.exposure import luminance_from_ev, luminance_from_units
 from skybake.colour.space import ColourSpace, find_colour_space
 from skybake.errors import InputError
 from skybake.formats.compression import parse_compression
+from skybake.image.night import Night
 from skybake.projection import Equirect, Projection, find_projection
 from skybake.sky.sky import METHODS
 from skybake.units import degrees, metres
+
+if TYPE_CHECKING:
+    from skybake.ephemeris.moon import Moon
 
 SUN_DISCS = ("include", "exclude", "only", "separate")
 BELOW_HORIZON = ("ground", "extend", "black")
@@ -79,6 +83,8 @@ class Lighting:
         Factor of the disc's light, greater than 0; the sky keeps its own.
     method : {"full", "hillaire", "march"}
         How light is transported, see `skybake.sky.sky.Sky`.
+    moon : Moon or None
+        What may be in front of the sun.
     """
 
     sun_elevation: float = math.radians(30.0)
@@ -89,6 +95,7 @@ class Lighting:
     sun_soft: bool = False
     sun_strength: float = 1.0
     method: str = "full"
+    moon: Moon | None = None
 
     def __post_init__(self) -> None:
         """Refuse what cannot be baked."""
@@ -209,12 +216,15 @@ class MapSettings:
         How it is stored.
     clouds : Clouds
         When clouds are seen, if the world has any.
+    night : Night
+        Which stars are shown.
     """
 
     view: View = field(default_factory=View)
     lighting: Lighting = field(default_factory=Lighting)
     encoding: Encoding = field(default_factory=Encoding)
     clouds: Clouds = field(default_factory=Clouds)
+    night: Night = field(default_factory=Night)
 
     def recipe(self, *, has_clouds: bool = False) -> dict[str, Any]:
         """All that decides the pixels, in human-readable units, fit for JSON.
@@ -247,7 +257,9 @@ class MapSettings:
             **({"mips": True} if encoding.mips else {}),
             **({"layers": True} if encoding.layers else {}),
             **({} if encoding.target is None else {"target": encoding.target}),
+            **({} if lighting.moon is None else lighting.moon.recipe()),
             **(self.clouds.recipe() if has_clouds else {}),
+            **self.night.recipe(),
         }
 
 
@@ -267,9 +279,9 @@ def map_settings(
         Of a projection that is given by name: width and height, or edge. [pixel]
     **values
         Attributes of `View`, `Lighting` and `Encoding`, such as ``sun_elevation=0.1``, of the
-        named projection, such as ``layout="cross"``, and ``cloud_time`` [s] and
-        ``clouds_quality``, see `Clouds`. With ``target="blender"`` what is not given is as that
-        program needs it, and a rotation turns what it takes for north.
+        named projection, such as ``layout="cross"``, ``cloud_time`` [s] and
+        ``clouds_quality``, see `Clouds`, and ``night``, a `Night`. With ``target="blender"``
+        what is not given is as that program needs it, and a rotation turns what it takes for north.
 
     Raises
     ------
@@ -283,6 +295,7 @@ def map_settings(
     for name, kind in (("view", View), ("lighting", Lighting), ("encoding", Encoding)):
         names = {one.name for one in fields(kind)}
         parts[name] = {key: values.pop(key) for key in names & values.keys()}
+    night = values.pop("night", Night())
     clouds = {own: values.pop(name) for name, own in _CLOUDS.items() if name in values}
     if isinstance(projection, str):
         size = (size,) if isinstance(size, int) else size
@@ -291,9 +304,8 @@ def map_settings(
         given = sorted({*values, *(() if size is None else ("size",))})
         raise InputError(f"settings: {', '.join(given)} must be given by the projection itself")
     view = View(projection=projection, **parts["view"])
-    return MapSettings(
-        view, Lighting(**parts["lighting"]), Encoding(**parts["encoding"]), Clouds(**clouds)
-    )
+    lighting, encoding = Lighting(**parts["lighting"]), Encoding(**parts["encoding"])
+    return MapSettings(view, lighting, encoding, Clouds(**clouds), night)
 
 
 def _for_target(

@@ -74,13 +74,16 @@ def light_findings(
 
 
 def _held(attributes: Mapping[str, Any], part: str) -> tuple[str, ...]:
-    """Which light a part holds, of sky and sun; none where that is not known."""
+    """Which light a part holds, of sky, sun and stars; none where that is not known."""
     shown = file_recipe(attributes).get("map")
     disc = shown.get("sun_disc", "include") if isinstance(shown, dict) else "include"
+    stars = ("stars",) if "skybake:starIlluminance" in attributes else ()
+    if isinstance(shown, dict) and shown.get("stars") == "only":
+        return stars
     by_disc = {"include": ("sky", "sun"), "exclude": ("sky",), "only": ("sun",)}
     if part in {"", "beauty"}:
-        return by_disc.get(disc, ("sky",))
-    return {"sky": ("sky",), "sun": ("sun",)}.get(part, ())
+        return (*by_disc.get(disc, ("sky",)), *stars)
+    return (part,) if part in {"sky", "sun", "stars"} else ()
 
 
 def _tolerance(attributes: Mapping[str, Any]) -> float:
@@ -89,7 +92,11 @@ def _tolerance(attributes: Mapping[str, Any]) -> float:
 
 
 def _stated(attributes: Mapping[str, Any], held: Sequence[str]) -> float | None:
-    names = {"sky": "skybake:skyIlluminance", "sun": "skybake:directIlluminance"}
+    names = {
+        "sky": "skybake:skyIlluminance",
+        "sun": "skybake:directIlluminance",
+        "stars": "skybake:starIlluminance",
+    }
     figures = [_figure(attributes, names[one]) for one in held]
     whole = [figure for figure in figures if figure is not None]
     return sum(whole) if len(whole) == len(figures) else None

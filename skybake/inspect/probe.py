@@ -11,11 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from skybake.angles import cosine_between
+from skybake.ephemeris.moon import Moon
 from skybake.errors import InputError, UnsolvableError
 from skybake.image.light import light_of_scene
 from skybake.image.luminous import luminous_weights
-from skybake.image.scene import DARK, ROUNDING, Scene
+from skybake.image.scene import Scene
 from skybake.image.settings import Clouds, Lighting, MapSettings, View
+from skybake.image.survey import DARK, ROUNDING
 from skybake.inspect.clouded import clouded_light
 from skybake.inspect.traced import traced_radiance
 from skybake.optics.medium import Array
@@ -97,6 +99,7 @@ def probe(
     sun_azimuth: float = math.pi,
     altitude: float = 0.0,
     sun_distance: float | None = None,
+    moon: Moon | None = None,
     wavelengths: Array | None = None,
     per_irradiance: bool = False,
     illuminance: bool = False,
@@ -120,6 +123,8 @@ def probe(
         Of the observer. [km]
     sun_distance : float, optional
         Of the sun; default the preset's. [au]
+    moon : Moon, optional
+        What may be in front of the sun.
     wavelengths : ndarray, optional
         In any order; default the renderer's own. [nm]
     per_irradiance : bool, optional
@@ -154,6 +159,7 @@ def probe(
         altitude,
         sun_azimuth=sun_azimuth,
         sun_distance=sun_distance,
+        moon=moon,
         wavelengths=wavelengths,
         method=fast,
     )
@@ -188,6 +194,10 @@ def _radiance(
     clouded = _clouded(planet, sky, directions, np.eye(sky.wavelengths.size), clouds)
     if clouded is not None:
         return _without_rounding(clouded), None
+    if sky.eclipse is not None:
+        mu = np.cos(directions.zenith)
+        eclipsed, _ = sky.eclipse.radiance_per_irradiance(mu, directions.azimuth)
+        return _without_rounding(eclipsed), None
     sun_zenith = sky.source.zenith
     mu, sine = np.cos(directions.zenith), np.sin(directions.zenith)
     nu = cosine_between(mu, sine, math.cos(sun_zenith), math.sin(sun_zenith), directions.azimuth)
@@ -232,6 +242,7 @@ def _colour(
             sky.altitude,
             sun_azimuth=sky.sun_azimuth,
             sun_distance=sky.sun_distance,
+            moon=sky.moon,
             method=sky.method,
         )
         values = None
@@ -259,6 +270,7 @@ def _illuminance(
         sun_azimuth=sky.sun_azimuth,
         sun_distance=sky.sun_distance,
         method=sky.method,
+        moon=sky.moon,
     )
     settings = MapSettings(View(sky.altitude), lighting, clouds=clouds)
     light = light_of_scene(Scene(planet, settings))

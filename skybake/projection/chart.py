@@ -85,6 +85,10 @@ class Chart(ABC):
             directions that it does not show.
         """
 
+    def stretch(self, row: Array) -> Array:
+        """How many times as narrow as high pixels are, at rows as of `places`, at least 1."""
+        return np.ones_like(row)
+
     def looks_nowhere(self, _first: int, _last: int) -> npt.NDArray[np.bool_] | None:
         """Pixels in rows first..last that stay black; None if there are none."""
         return None

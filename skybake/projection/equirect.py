@@ -125,6 +125,13 @@ class EquirectChart(Chart):
         """Solid angle of a texel in each row, shape (row, 1). [sr]"""
         return solid_angles(self.width, self.height, self.rows)[first:last, None]
 
+    def stretch(self, row: Array) -> Array:
+        """How many times as narrow as high pixels are: ever more toward the poles."""
+        row = row - 0.5 if self.rows == "poles" else row
+        sine = np.sin(row * _row_step(self.height, self.rows))
+        narrow: Array = 1.0 / np.maximum(sine, 0.5 / self.width)
+        return narrow
+
     def disc_cells(self, zenith: float, bearing: float, radius: float) -> Cells:
         """Cut a disc into cells, each of which adds to the four nearest texels.
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from skybake.baking.checks import check_targets
 from skybake.baking.paths import map_paths
-from skybake.baking.write import check_targets
 from skybake.errors import ArgumentError, OutputError
 from skybake.formats.spec import Attribute
 from skybake.image.settings import MapSettings

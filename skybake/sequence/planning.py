@@ -9,8 +9,11 @@ from typing import Any, cast
 
 from skybake.baking.paths import preview_beside, usual_suffix, world_name
 from skybake.ephemeris.moment import Moment, TimeSpan
+from skybake.ephemeris.moon import Moon
 from skybake.ephemeris.place import check_planet
 from skybake.errors import ArgumentError, InputError
+from skybake.image.eclipsing_moon import eclipsing_moon
+from skybake.image.night import Night, night_at
 from skybake.image.settings import MapSettings
 from skybake.image.sun_distance import sun_distance as distance_of_sun
 from skybake.optics.changes import PresetChanges
@@ -34,6 +37,7 @@ def plan_sequence(
     settings: MapSettings | None = None,
     exposure_curve: ExposureCurve | str | Path | None = None,
     cloud_time: float | Ramp | None = None,
+    eclipses: bool = True,
     output: str | Path | None = None,
     preview: str | Path | bool = False,
 ) -> Plan:
@@ -67,6 +71,9 @@ def plan_sequence(
     cloud_time : float or Ramp, optional
         For which clouds have drifted; by default, with times of Earth's clock, as long as since
         the first of them, else as in `settings`. [s]
+    eclipses : bool, optional
+        Put the planet's moons in front of the sun where they are at the times, unless there is one
+        in `settings`.
     output : str or Path, optional
         Pattern of the maps' files, as ``sky.####.exr``; by default named after the world.
     preview : str, Path or bool, optional
@@ -107,14 +114,22 @@ def plan_sequence(
         path = maps.path(number)
         picture = preview_beside(path) if preview is True else None
         world = min(i, len(planets) - 1)
+        distance = distance_of_sun(planets[world], moment, sun_distance)
+        height = _at(altitude, share)
+        moon = settings.lighting.moon
+        if moon is None and eclipses:
+            above = settings.view.altitude if height is None else height
+            moon = eclipsing_moon(planets[world], moment, distance, above)
         at_share = _settings_at(
             settings,
             _at(sun_elevation, share) if moment is None else moment.sun_elevation,
             _at(sun_azimuth, share) if moment is None else moment.sun_azimuth,
-            distance_of_sun(planets[world], moment, sun_distance),
-            _at(altitude, share),
+            distance,
+            height,
             None if exposure_curve is None else exposure_curve.at(number),
             None if drift is None or not planets[world].clouds else drift[i],
+            moon,
+            settings.night if moment is None else night_at(settings.night, moment),
         )
         planned.append(
             Frame(
@@ -235,13 +250,15 @@ def _settings_at(
     altitude: float | None,
     ev: float | None,
     cloud_time: float | None,
+    moon: Moon | None,
+    night: Night,
 ) -> MapSettings:
     """Return settings with what a frame has of its own; None leaves a value as it is.
 
     A distance of None is the preset's.
     """
     view, encoding = settings.view, settings.encoding
-    lighting = replace(settings.lighting, sun_distance=sun_distance)
+    lighting = replace(settings.lighting, sun_distance=sun_distance, moon=moon)
     if altitude is not None:
         view = replace(view, altitude=altitude)
     if sun_elevation is not None:
@@ -251,4 +268,4 @@ def _settings_at(
     if ev is not None:
         encoding = replace(encoding, ev=ev)
     clouds = settings.clouds if cloud_time is None else replace(settings.clouds, time=cloud_time)
-    return MapSettings(view, lighting, encoding, clouds)
+    return MapSettings(view, lighting, encoding, clouds, night)

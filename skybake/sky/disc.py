@@ -125,7 +125,10 @@ class Disc:
         if occluder is not None:
             away = np.cos(distance) * sine + np.sin(distance) * mu * np.cos(spoke)
             beside = np.arctan2(np.sin(distance) * np.sin(spoke), away)
-            light *= occluder.visible_share(self.source.azimuth + beside, zenith)[:, None]
+            share = occluder.visible_share(self.source.azimuth + beside, zenith)[:, None]
+            passed = (weight * share).sum(axis=0)
+            # Points are too few for the light of a thin crescent, but not for its colour.
+            light *= share * occluder.uncovered / np.where(passed > 0.0, passed, 1.0)
         horizontal = (light * np.maximum(cosine, 0.0)[:, None]).sum(axis=0)
         return light.sum(axis=0), horizontal
 

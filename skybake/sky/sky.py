@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,6 +22,10 @@ from skybake.sky.observer import Observer
 from skybake.sky.single import SingleSkylight
 from skybake.sky.skylight import Skylight
 from skybake.sky.source import Source, check_direction
+
+if TYPE_CHECKING:
+    from skybake.ephemeris.moon import Moon
+    from skybake.sky.eclipse import Eclipse
 
 METHODS = ("full", "hillaire", "march")
 WAVELENGTHS = np.linspace(380.0, 720.0, 16)
@@ -41,6 +47,8 @@ class Sky:
         Compass bearing of the sun, 0 = north, clockwise; default south. [rad]
     sun_distance : float, optional
         Of the sun; default the preset's. [au]
+    moon : Moon, optional
+        What may be in front of the sun.
     wavelengths : array_like, optional
         Ascending; default 16 from 380 to 720 nm, or the preset's own. [nm]
     method : {"full", "hillaire", "march"}, optional
@@ -65,6 +73,7 @@ class Sky:
         *,
         sun_azimuth: float = math.pi,
         sun_distance: float | None = None,
+        moon: Moon | None = None,
         wavelengths: Array | None = None,
         method: str = "full",
         workers: Workers = ALL_CPUS,
@@ -80,6 +89,7 @@ class Sky:
         self.sun_elevation = sun_elevation
         self.sun_azimuth = sun_azimuth
         self.sun_distance = sun_distance
+        self.moon = moon
         self.altitude = altitude
         self.method = method
         self.workers = workers
@@ -107,8 +117,29 @@ class Sky:
         return star_irradiance(self.star, self.wavelengths)
 
     @cached_property
+    def eclipse(self) -> Eclipse | None:
+        """The eclipse by the moon, or None where its shadow is nowhere that can be seen.
+
+        Raises
+        ------
+        InputError
+            If the method has single scattering alone.
+        """
+        if self.moon is None:
+            return None
+        from skybake.sky.eclipse import find_eclipse
+
+        return find_eclipse(self, self._whole_sun, self.moon)
+
+    @cached_property
     def source(self) -> Source:
         """The sun, as a source of light."""
+        if self.eclipse is None:
+            return self._whole_sun
+        return replace(self._whole_sun, occluder=self.eclipse.occluder)
+
+    @cached_property
+    def _whole_sun(self) -> Source:
         return Source(
             azimuth=self.sun_azimuth,
             elevation=self.sun_elevation,
@@ -140,10 +171,13 @@ class Sky:
         InputError
             If a direction has no length or is not finite.
         """
-        return self.skylight.radiance(directions)
+        return (self.eclipse or self.skylight).radiance(directions)
 
     def radiance_per_irradiance(self, mu: Array, nu: Array) -> Array:
-        """Radiance per unit irradiance of the sun, see `Skylight.radiance_per_irradiance`."""
+        """Radiance per unit irradiance of the sun, see `Skylight.radiance_per_irradiance`.
+
+        Without an eclipse, whose light depends on more than two angles.
+        """
         return self.skylight.radiance_per_irradiance(self.source, mu, nu)
 
     @cached_property

@@ -14,6 +14,11 @@ from skybake.optics.medium import Array
 class Occluder(Protocol):
     """What covers a part of a source, such as a moon in front of the sun."""
 
+    @property
+    def uncovered(self) -> Array:
+        """Share of the whole source's light that passes by, shape (wavelength,)."""
+        ...
+
     def visible_share(self, azimuth: Array, zenith: Array) -> Array:
         """Share of the light from points of the source that passes by.
 

@@ -156,6 +156,8 @@ def test_after_warm_nothing_is_compiled(tmp_path, cold):
     for use in USES:
         status, _, errors = run(*use, "-q", "-o", "a.exr", cwd=tmp_path, env=cold)
         assert (status, errors) == (0, "")
+    status, _, errors = run("luts", "-q", "-o", "tables", cwd=tmp_path, env=cold)
+    assert (status, errors) == (0, "")
     for method in ("full", "reference"):
         for world in ("earth", "earth-fair"):
             traced = ("--preset", world, "--method", method, "--samples", "2")

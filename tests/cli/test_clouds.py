@@ -91,6 +91,17 @@ def test_a_grid_of_openvdb_becomes_a_tile(tmp_path, openvdb):
     np.testing.assert_array_equal(values, 2.0 * np.arange(6.0).reshape(2, 1, 3).transpose(2, 1, 0))
 
 
+def test_a_module_that_does_not_load_says_why(tmp_path):
+    (tmp_path / "openvdb.py").write_text("raise ImportError('libopenvdb.so.12: no such file')\n")
+    environment = {"PYTHONPATH": f"{tmp_path}:{':'.join(sys.path)}"}
+    status, _, errors = run("clouds", "import", "a.vdb", "-o", tmp_path / "a.npz", env=environment)
+    assert (status, errors) == (
+        1,
+        "skybake: a.vdb: needs the Python module openvdb, which does not load "
+        "(libopenvdb.so.12: no such file)\n",
+    )
+
+
 def test_a_grid_that_is_missing_is_named(tmp_path, openvdb):
     status, _, errors = run(
         "clouds", "import", "a.vdb", "--grid", "fog", "-o", tmp_path / "a.npz", env=openvdb

@@ -81,6 +81,10 @@ USAGE = """
 --preview --shot 180,0,0          => '--shot': must be greater than 0deg, got 0
 --preview --shot 180,0,171        => '--shot': must have a field of view of at most 170deg, got 171
 --preview --shot 180,0,50m        => '--shot': must be an angle such as 5deg
+--clouds tile:cloud.npz           => '--clouds': tile:cloud.npz: a tile must be written as tile=
+--clouds cloud.npz,base=1km       => '--clouds': cloud.npz: a tile must be written as tile=cloud.npz
+--clouds cumulus:9okta            => '--clouds': cumulus:9okta: cover must be a share such as 0.4,
+--clouds cumulus:0.4,bass=1km     => '--clouds': bass=1km: unknown key 'bass', nearest: base; known
 --colour acescg                   => No such option
 spare                             => Got unexpected extra argument (spare)
 --sun                             => Option '--sun' requires an argument.

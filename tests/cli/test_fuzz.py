@@ -12,7 +12,14 @@ from skybake.preset import preset_text
 from tests.cli.runs import invoke, run
 
 # Long runs are no fault, so what decides on the cost of a run is never mutated.
-COSTLY = {"samples": ["1", "0", "x"], "frames": ["1-3", "5", "3-1", "1-9:2", "1,,2", ""]}
+COSTLY = {
+    "samples": ["1", "0", "x"],
+    "frames": ["1-3", "5", "3-1", "1-9:2", "1,,2", ""],
+    "transmittance_size": ["8x4", "1x4", "x"],
+    "multiple_scattering_size": ["4x4", "4", "4x4x4"],
+    "sky_view_size": ["8x6", "8x7", "0x2", "9999x2"],
+    "aerial_size": ["3x2x5", "2x2x2", "3x2", "2x2x9999", ""],
+}
 PATHS = [
     "a.exr",
     "a.hdr",
@@ -40,6 +47,8 @@ EXAMPLES = {
     "size": ["16x8", "16", "0x0", "16x9", "4x2"],
     "fov": ["40deg", "180deg", "0deg", "300deg"],
     "look": ["180,-18", "90deg,0.1rad", "0,91", "180", "x,y"],
+    "aspect": ["16:9", "1.5", "0", "1:0", "a:b", "1e400"],
+    "far": ["64km", "1m", "0m", "1e30km", "-1km"],
     "face_names": ["px", "right", "a,b,c,d,e,f", "a,b", "a,a,b,c,d,e", "../px"],
     "rotate": ["0deg", "-90", "1e9deg", "north"],
     "sun_size": ["2deg", "0.1rad", "0", "21deg"],
@@ -49,6 +58,11 @@ EXAMPLES = {
     "preview_ev": ["auto", "12", "adapt"],
     "white_balance": ["auto", "none", "5500K", "4000", "9", "warm"],
     "shot": ["180,10,50", "90deg,0.1rad,1rad", "0,91,20", "0,0,175", "0,0,0", "180", "x,y,z"],
+    "stars": ["include", "exclude", "only", "4.5", "9", "bright"],
+    "airglow": ["0.75", "0", "-1", "dim"],
+    "zodiacal": ["2", "0", "1e9", "nan"],
+    "sidereal_time": ["5h", "18:36", "279deg", "25h", "361"],
+    "moon": ["180deg,30deg", "180,30,0.5deg", "180,30,0.5deg,inf", "0,91", "180", "a,b"],
     "latitude": ["48.85", "90N", "91"],
     "longitude": ["2.35", "200W", "E"],
     "zone": ["Europe/Paris", "UTC", "Mars/Gale"],
@@ -76,10 +90,11 @@ ALWAYS = {
     "render": ("--method", "hillaire", "--size", "16x8"),
     "sequence": ("--method", "hillaire", "--dry-run"),
     "probe": ("--method", "hillaire", "--samples", "1"),
+    "luts": ("--method", "hillaire", "--aerial-size", "3x2x4", "-o", "tables"),
 }
 COMMANDS = {
     name: main.get_command(click.Context(main), name)
-    for name in ("render", "sequence", "probe", "preview")
+    for name in ("render", "sequence", "probe", "preview", "luts")
 }
 
 mutations = st.one_of(

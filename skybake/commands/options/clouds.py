@@ -75,6 +75,9 @@ def _read_head(head: str) -> tuple[dict[str, Any], dict[str, str]]:
     if head.startswith(f"{_TILE}="):
         return {_TILE: head.partition("=")[2].strip()}, {_TILE: head}
     kind, colon, cover = (part.strip() for part in head.partition(":"))
+    if kind == _TILE or head.endswith(".npz"):
+        file = cover if kind == _TILE else head
+        raise click.BadParameter(f"{head}: a tile must be written as {_TILE}={file or 'FILE.npz'}")
     table: dict[str, Any] = {"kind": kind}
     if colon:
         table["cover"] = _number_or_text(cover)

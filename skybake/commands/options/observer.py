@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from skybake.commands.options import values
-from skybake.commands.options.rules import Decorator, Needs
+from skybake.commands.options.rules import Decorator, Needs, options_together
 
 if TYPE_CHECKING:
     from skybake.ephemeris.moment import Moment
+    from skybake.ephemeris.moon import Moon
+    from skybake.preset import Planet
 
 
 def sun_option(*, is_range: bool = False) -> Decorator:
@@ -52,6 +54,59 @@ def sun_distance_option() -> Decorator:
 def sun_distance_needs(options: Mapping[str, Any], *, is_timed: bool, time: str) -> Needs:
     """Return what `sun_distance_option` needs: `time`, the option or options of a time."""
     return {"sun_distance": (is_timed or options["sun_distance"] != "date", f"date needs {time}")}
+
+
+def moon_options(times: str) -> Decorator:
+    """Return ``--moon`` and ``--eclipse``; `times` is the option or options of a time."""
+    return options_together(
+        click.option(
+            "--moon",
+            metavar="AZIMUTH,ELEVATION[,DIAMETER[,DISTANCE]]",
+            type=values.moon,
+            help="Moon in front of the sun; by default as large and as far as Earth's on average, "
+            "0.518deg and 384400km. A distance of inf is one without parallax.",
+        ),
+        click.option(
+            "--eclipse",
+            type=click.Choice(("auto", "off")),
+            show_default="auto",
+            help=f"Whether {times} puts the Moon, Phobos or Deimos in front of the sun where it "
+            "is then.",
+        ),
+    )
+
+
+def moon_needs(options: Mapping[str, Any], *, is_timed: bool, time: str) -> Needs:
+    """Return what `moon_options` need: `time`, the option or options of a time."""
+    problem = "cannot be combined with --moon" if options["moon"] else f"needs {time}"
+    return {"eclipse": (is_timed and not options["moon"], problem)}
+
+
+def moon_from_options(
+    options: Mapping[str, Any],
+    planet: Planet,
+    moment: Moment | None,
+    sun_distance: float | None,
+) -> Moon | None:
+    """Return the moon that may be in front of the sun.
+
+    Parameters
+    ----------
+    options : mapping
+        With the values of `moon_options` and of ``--altitude``.
+    planet : Planet
+        The world.
+    moment : Moment or None
+        When.
+    sun_distance : float or None
+        As of `skybake.image.settings.Lighting`. [au]
+    """
+    if options["moon"] is not None or options["eclipse"] == "off":
+        moon: Moon | None = options["moon"]
+        return moon
+    from skybake.image.eclipsing_moon import eclipsing_moon
+
+    return eclipsing_moon(planet, moment, sun_distance, options["altitude"])
 
 
 def altitude_option(*, is_range: bool = False) -> Decorator:

@@ -70,12 +70,20 @@ place_options = options_together(
 )
 
 
-def place_needs(*, is_timed: bool, time: str) -> Needs:
+def place_needs(*, is_timed: bool, time: str, is_latitude_free: bool = False) -> Needs:
     """Return what the options of a place need: `time`, the option or options of a time.
 
-    If these are given, the sun cannot be placed by angles.
+    If these are given, the sun cannot be placed by angles. A latitude may serve something else.
     """
-    where = ("latitude", "longitude", "site", "solar_longitude", "zone", "day", "refraction")
+    where = (
+        *(() if is_latitude_free else ("latitude",)),
+        "longitude",
+        "site",
+        "solar_longitude",
+        "zone",
+        "day",
+        "refraction",
+    )
     return dict.fromkeys(where, (is_timed, f"needs {time}")) | dict.fromkeys(
         ("sun_elevation", "sun_azimuth"), (not is_timed, f"cannot be combined with {time}")
     )

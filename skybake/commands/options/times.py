@@ -52,7 +52,12 @@ span_options = options_together(
 
 def moment_needs(context: click.Context) -> Needs:
     """Return what `moment_options` need to have an effect."""
-    return place_needs(is_timed=context.params["time"] is not None, time="--time")
+    options = context.params
+    return place_needs(
+        is_timed=options["time"] is not None,
+        time="--time",
+        is_latitude_free=options.get("sidereal_time") is not None,
+    )
 
 
 def moment_from_options(context: click.Context) -> Moment | None:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from datetime import date
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -16,6 +16,9 @@ from skybake.errors import InputError
 from skybake.sequence.frames import parse_frames
 from skybake.sequence.ramp import Ramp
 from skybake.units import parse_angle, parse_duration, parse_length
+
+if TYPE_CHECKING:
+    from skybake.ephemeris.moon import Moon
 
 COLDEST, HOTTEST = 1000.0, 25_000.0
 DAYS_FROM_TODAY = {"yesterday": -1, "today": 0, "tomorrow": 1}
@@ -71,6 +74,37 @@ def longitude(text: str) -> float:
     return math.remainder(angle, 2 * math.pi)
 
 
+def sidereal_time(text: str) -> float:
+    """Read hours such as ``18h``, ``18.6h`` or ``18:36``, or an angle from 0deg to 360deg. [rad]"""
+    found = re.fullmatch(r"(\d{1,2}):([0-5]\d)|(\d{1,2}(?:\.\d+)?)h", text.strip(), re.ASCII)
+    if found is None:
+        return solar_longitude(text)
+    hours = float(found[3]) if found[3] else int(found[1]) + int(found[2]) / 60.0
+    if hours > 24.0:
+        raise click.BadParameter(f"must be from 0h to 24h, got {text}")
+    return math.radians(15.0 * hours)
+
+
+def stars(text: str) -> float | str:
+    """Read ``include``, ``exclude``, ``only`` or a magnitude, which is checked by settings."""
+    if text in {"include", "exclude", "only"}:
+        return text
+    try:
+        return float(text)
+    except ValueError:
+        raise click.BadParameter(
+            f"must be include, exclude, only or a magnitude such as 4.5, got {text!r}"
+        ) from None
+
+
+def scale(text: str) -> float:
+    """Read a factor, whose range settings check."""
+    try:
+        return float(text)
+    except ValueError:
+        raise click.BadParameter(f"must be a number such as 1.5, got {text!r}") from None
+
+
 def solar_longitude(text: str) -> float:
     """Read an angle from 0deg to 360deg. [rad]"""
     angle = _parse(text, parse_angle)
@@ -92,6 +126,27 @@ def sun_distance(text: str) -> float | str:
             f"must be mean, date or a number of au from {_NEAREST:g} to {_FARTHEST:g}, got {text!r}"
         )
     return distance
+
+
+def moon(text: str) -> Moon:
+    """Read ``195deg,40deg``, with a diameter as ``0.52deg`` and a distance as ``384400km``."""
+    from skybake.ephemeris.moon import Moon
+
+    parts = text.split(",")
+    if not 2 <= len(parts) <= 4:
+        raise click.BadParameter(
+            f"must be AZIMUTH,ELEVATION[,DIAMETER[,DISTANCE]] such as 180deg,40deg, got {text!r}"
+        )
+    others = {}
+    if len(parts) > 2:
+        others["diameter"] = _parse(parts[2], parse_angle)
+    if len(parts) > 3:
+        is_far = parts[3].strip() == "inf"
+        others["distance"] = math.inf if is_far else length(parts[3])
+    try:
+        return Moon(bearing(parts[0]), elevation(parts[1]), **others)
+    except InputError as error:
+        raise click.BadParameter(str(error)) from error
 
 
 def day(text: str) -> date | str:

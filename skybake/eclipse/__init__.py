@@ -1,0 +1,1 @@
+"""A moon in front of the sun, and the light that it leaves, from place to place."""

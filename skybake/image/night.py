@@ -1,0 +1,115 @@
+"""What of the night a map shows besides the sun's light."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from skybake.ephemeris.celestial import CelestialFrame
+from skybake.errors import InputError
+from skybake.units import degrees
+
+if TYPE_CHECKING:
+    from skybake.ephemeris.moment import Moment
+
+STARS = ("include", "exclude", "only")
+
+FAINTEST_STAR = 6.5
+"""Of the catalogue, in V. [mag]"""
+
+BRIGHTEST_STAR = -1.44
+"""Sirius, in V. [mag]"""
+
+
+BRIGHTEST = 100.0
+"""Largest factor of the light of the sky between stars."""
+
+
+@dataclass(frozen=True)
+class Night:
+    """Which stars are shown, and how they stand.
+
+    Attributes
+    ----------
+    frame : CelestialFrame or None
+        How they stand; None shows none.
+    stars : {"include", "exclude", "only"}
+        Whether the map holds stars, or nothing else.
+    faintest_star : float
+        Magnitude V up to which stars are shown, from `BRIGHTEST_STAR` to `FAINTEST_STAR`. [mag]
+    is_refracted : bool
+        Whether the air of Earth raises them.
+    is_shown : bool
+        False leaves out all lights of the night.
+    airglow : float
+        Of Earth, 1 at a mean solar flux; from 0 to `BRIGHTEST`.
+    zodiacal : float
+        Of sunlight that dust between the planets scatters, 1 as it is; from 0 to `BRIGHTEST`.
+    """
+
+    frame: CelestialFrame | None = None
+    stars: str = "include"
+    faintest_star: float = FAINTEST_STAR
+    is_refracted: bool = False
+    is_shown: bool = True
+    airglow: float = 1.0
+    zodiacal: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be shown."""
+        if self.stars not in STARS:
+            raise InputError(f"stars: must be one of {', '.join(STARS)}, got {self.stars!r}")
+        if not BRIGHTEST_STAR <= self.faintest_star <= FAINTEST_STAR:
+            raise InputError(
+                f"stars: magnitude must be from {BRIGHTEST_STAR:g}, of the brightest star, to "
+                f"{FAINTEST_STAR:g}, got {self.faintest_star:g}"
+            )
+
+        for name in ("airglow", "zodiacal"):
+            if not 0.0 <= getattr(self, name) <= BRIGHTEST:
+                raise InputError(
+                    f"{name}: must be from 0 to {BRIGHTEST:g}, got {getattr(self, name):g}"
+                )
+
+    @property
+    def shows_glow(self) -> bool:
+        """Whether the sky between stars has a light of its own."""
+        return self.is_shown and self.frame is not None and self.stars != "only"
+
+    @property
+    def shows_stars(self) -> bool:
+        """Whether there can be any."""
+        return self.is_shown and self.frame is not None and self.stars != "exclude"
+
+    def recipe(self) -> dict[str, Any]:
+        """All that decides the pixels, in human-readable units, fit for JSON."""
+        if self.frame is None or not self.is_shown:
+            return {}
+        return {
+            "stars": self.stars,
+            "faintest_star_mag": self.faintest_star,
+            "airglow": self.airglow if self.frame.planet == "earth" else 0.0,
+            "zodiacal": self.zodiacal,
+            "sidereal_time_deg": degrees(self.frame.sidereal_time),
+            "vertical_latitude_deg": degrees(self.frame.latitude),
+            "julian_year": self.frame.year,
+            "stars_refracted": self.is_refracted,
+        }
+
+
+def night_of(night: Night, frame: CelestialFrame, planet: str | None) -> Night:
+    """Return the night of a world by how the stars stand.
+
+    Airglow is Earth's, and zodiacal light is known between the sun and Mars alone.
+    """
+    return replace(
+        night,
+        frame=frame,
+        airglow=night.airglow if planet == "earth" else 0.0,
+        zodiacal=night.zodiacal if planet in {"earth", "mars"} else 0.0,
+    )
+
+
+def night_at(night: Night, moment: Moment) -> Night:
+    """Return the night as a moment has it."""
+    return replace(night, frame=moment.celestial, is_refracted=moment.is_refracted)

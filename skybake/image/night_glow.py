@@ -1,0 +1,67 @@
+"""The light of the sky between the stars, in maps."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from skybake.colour.space import rgb_from_xyz
+from skybake.image.layers import Pixels
+from skybake.image.scene import Scene
+from skybake.jit.arguments import flatten
+from skybake.night.dome import ABOVE, NightDome
+from skybake.night.dome_pixels import fill_dome
+from skybake.optics.medium import Array
+
+BRIGHTEST = 1.5e-3
+"""Of the sky between stars, away from the sun. [cd m⁻²]"""
+
+VISIBLE = 1e-3
+"""Share of the darkest light of the sky that it must be to be seen."""
+
+ROWS_AT_ONCE = 16
+
+
+def visible_glow(scene: Scene) -> NightGlow | None:
+    """Return the glow of a scene's night, or None where twilight outshines it."""
+    night = scene.settings.night
+    darkest = float((scene.clear_survey @ scene.luminance).min())
+    factor = max(night.airglow, night.zodiacal, 1.0)
+    if night.frame is None or factor * BRIGHTEST < VISIBLE * darkest:
+        return None
+    airglow = night.airglow if night.frame.planet == "earth" else 0.0
+    dome = NightDome(scene.sky, night.frame, airglow=airglow, zodiacal=night.zodiacal)
+    return NightGlow(scene, dome)
+
+
+class NightGlow:
+    """Pixel values of the night's sky.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is shown.
+    dome : NightDome
+        Its light.
+    """
+
+    def __init__(self, scene: Scene, dome: NightDome) -> None:
+        encoding = scene.settings.encoding
+        to_rgb = rgb_from_xyz(encoding.space).T / encoding.white_luminance
+        self._table = (dome.xyz @ to_rgb).astype(np.float32)
+        self._horizon, self._workers = dome.zenith_horizon, scene.workers
+        self._sun_azimuth = scene.settings.lighting.sun_azimuth
+
+    def add(self, zenith: Array, azimuth: Array, footprint: Array | float, out: Pixels) -> None:
+        """Add it to pixels, of which azimuths are counted from the sun; see `Scene.evaluate`."""
+        extent = np.atleast_2d(np.asarray(footprint, dtype=float))
+        bearing = np.ascontiguousarray(azimuth + self._sun_azimuth)
+        places = [
+            flatten(each)
+            for each in (np.ascontiguousarray(zenith), bearing, np.ascontiguousarray(extent))
+        ]
+        table = flatten(self._table)
+
+        def work(first: int, last: int) -> None:
+            fill_dome(table, ABOVE, self._horizon, *places, first, last, out[first:last])
+
+        self._workers.run_rows(len(out), work, chunk=ROWS_AT_ONCE)

@@ -1,0 +1,1 @@
+"""Lights of the night beside the sun."""

@@ -1,0 +1,71 @@
+"""The stars that an observer sees through the air."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from skybake.angles import direction_from_angles, zenith_azimuth
+from skybake.ephemeris.celestial import CelestialFrame
+from skybake.ephemeris.horizon import Horizon
+from skybake.night.catalogue import FAINTEST, load_catalogue
+from skybake.night.star_light import star_irradiance
+from skybake.optics.medium import Array
+from skybake.sky.disc import Disc
+from skybake.sky.sky import Sky
+
+
+class Stars:
+    """Where stars are seen, and their light that arrives.
+
+    Parameters
+    ----------
+    sky : Sky
+        The observer and the air.
+    frame : CelestialFrame
+        How the stars stand.
+    faintest : float, optional
+        Magnitude V of the faintest ones, at most `FAINTEST`.
+    is_refracted : bool, optional
+        Whether the air of Earth raises them.
+
+    Attributes
+    ----------
+    vectors : ndarray of float64, shape (n, 3)
+        Unit vectors toward those that the planet does not hide: +Y up, -Z north, +X east.
+    transmittance : ndarray of float64, shape (n, wavelength)
+        Of the air on the way to them.
+    irradiance : ndarray of float64, shape (n, wavelength)
+        On a plane that faces each, below the air. [W m⁻² nm⁻¹]
+    """
+
+    def __init__(
+        self,
+        sky: Sky,
+        frame: CelestialFrame,
+        faintest: float = FAINTEST,
+        *,
+        is_refracted: bool = False,
+    ) -> None:
+        stars = load_catalogue().brighter_than(faintest)
+        vectors = frame.directions(stars.places, stars.motions)
+        if is_refracted:
+            vectors = _raised(vectors, Horizon(frame.planet, sky.altitude))
+        zenith, _ = zenith_azimuth(vectors)
+        passing = Disc(sky.skylight, sky.source).transmittance(zenith)
+        is_seen = np.any(passing > 0.0, axis=1)
+        self.vectors = vectors[is_seen]
+        self._v, self._b_v = stars.v[is_seen], stars.b_v[is_seen]
+        self.transmittance = passing[is_seen]
+        self.irradiance = self.above_air(sky.wavelengths) * self.transmittance
+
+    def above_air(self, wavelengths: Array) -> Array:
+        """Irradiance above the air, as of `star_irradiance`."""
+        return star_irradiance(self._v, self._b_v, wavelengths)
+
+
+def _raised(vectors: Array, horizon: Horizon) -> Array:
+    """Directions as refraction shows them."""
+    zenith, azimuth = zenith_azimuth(vectors)
+    elevation = np.pi / 2.0 - zenith
+    lift = np.array([horizon.lift(each) for each in elevation.tolist()])
+    return direction_from_angles(azimuth, elevation + lift)
