@@ -31,8 +31,8 @@ _RENAMED_WITHIN = 10.0
 _ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
 
 _COMMANDS = (
-    *("cache", "chart", "check", "clouds", "convert", "ibl", "luts", "presets", "preview"),
-    *("probe", "render", "sequence", "targets"),
+    *("aerial", "cache", "chart", "check", "clouds", "convert", "ibl", "luts", "presets"),
+    *("preview", "probe", "render", "sequence", "shot", "targets"),
 )
 
 # Message of the RuntimeError where a thread gets no stack or is not allowed.

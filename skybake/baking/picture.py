@@ -11,11 +11,13 @@ from typing import NamedTuple
 from skybake.colour.white_balance import chromaticity
 from skybake.formats.preview import open_preview
 from skybake.formats.whole_files import WholeFiles
+from skybake.image.layers import Pixels
 from skybake.image.meter import scene_white
 from skybake.image.picture import picture_ev, picture_projection, show_scene
 from skybake.image.picture_settings import PictureSettings
 from skybake.image.picture_texts import preview_texts
 from skybake.image.scene import Scene
+from skybake.projection import Projection
 
 
 class OpenPicture(NamedTuple):
@@ -27,13 +29,16 @@ class OpenPicture(NamedTuple):
         Its exposure value.
     white : tuple of float or None
         CIE xy of the light that becomes white; None for D65.
+    projection : Projection
+        What it shows.
     draw : callable
-        Makes the picture.
+        Makes the picture, of pixels in the projection if they are given.
     """
 
     ev: float
     white: tuple[float, float] | None
-    draw: Callable[[], None]
+    projection: Projection
+    draw: Callable[[Pixels | None], None]
 
 
 def open_picture(
@@ -73,5 +78,6 @@ def open_picture(
     return OpenPicture(
         ev,
         None if white is None else chromaticity(white),
+        shown,
         partial(show_scene, scene, show, ev, white, shown),
     )

@@ -7,6 +7,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from skybake.baking.losses import HalfLoss
 from skybake.formats.cube_file import is_cube_file
 from skybake.formats.spec import MapSpec
@@ -93,6 +95,18 @@ def open_pictures(
     each = {path: spec(raster) for path, raster in zip(paths, rasters, strict=True)}
     with open_maps(each, files) as writers:
         yield [_picture(raster, writers[path]) for raster, path in zip(rasters, each, strict=True)]
+
+
+def kept_picture(picture: Picture, width: int) -> tuple[Picture, Pixels]:
+    """Return the same picture, and where its rows are kept as they are computed, RGB."""
+    kept = np.empty((picture.height, width, 3), np.float32)
+
+    def rows(first: int, last: int) -> Band:
+        band = picture.rows(first, last)
+        kept[first:last] = band[0] if isinstance(band, tuple) else band
+        return band
+
+    return picture._replace(rows=rows), kept
 
 
 def write_pictures(

@@ -10,7 +10,7 @@ from pathlib import Path
 from skybake.baking.checks import check_targets
 from skybake.baking.losses import HalfLoss, scene_warnings
 from skybake.baking.paths import default_path, map_paths
-from skybake.baking.pictures import open_pictures, write_pictures
+from skybake.baking.pictures import kept_picture, open_pictures, write_pictures
 from skybake.baking.pixel_type import PixelType, fitting_pixel, value_range
 from skybake.formats.spec import Attribute, MapSpec
 from skybake.formats.whole_files import WholeFiles
@@ -22,6 +22,7 @@ from skybake.image.light import (
     light_of_scene,
     star_attributes,
 )
+from skybake.image.parts import part_names
 from skybake.image.picture_settings import PictureSettings
 from skybake.image.raster import Raster
 from skybake.image.recipe import recipe_attributes
@@ -226,7 +227,11 @@ def bake_scene(
             shown = open_picture(scene, preview, look, files, stack)
         is_radiance = paths[0].suffix.lower() == ".hdr"
         with open_pictures(scene, rasters, paths, spec, files) as pictures:
-            loss = None
+            loss, kept = None, None
+            if shown is not None and shown.projection == settings.view.projection:
+                is_whole = part_names(scene)[0] == "beauty"
+                if is_whole and len(pictures) == 1:
+                    pictures[0], kept = kept_picture(pictures[0], canvases[0].width)
             if is_radiance or (encoding.pixel == stored and stored != "float"):
                 loss = HalfLoss("half" if is_radiance else stored)
             write_pictures(pictures, scene.workers, progress, loss)
@@ -234,7 +239,7 @@ def bake_scene(
                 lost = loss.warning(paths[0])
                 warnings += [] if lost is None else [lost]
             if shown is not None:
-                shown.draw()
+                shown.draw(kept)
         if light_files and described is not None:
             from skybake.sidecar.light_file import write_light_files
 

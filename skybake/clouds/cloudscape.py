@@ -119,8 +119,9 @@ class Cloudscape:
             ground = reflects[k + 1] if k + 1 < len(reflects) else None
             around = Surroundings(sun_share, sky_ratio, ground)
             suns = suns_over(self.sun, self.air.radius, self.altitude, layer.field.top)
+            own = int(np.argmin(np.abs(suns[:, 2] - self.sun[2])))
             solved = solve_layer(
-                layer.grid, particle, *given, suns, around, reflects[k], self.workers
+                layer.grid, particle, *given, suns, own, around, reflects[k], self.workers
             )
             at = self._nearest(solved)
             sun_share = sun_share * float(solved.leaving[at].mean())

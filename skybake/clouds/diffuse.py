@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from skybake.clouds.merging import merge_levels, merge_pairs, spread_pairs
+from skybake.clouds.merging import merge_levels, merge_pairs
 from skybake.clouds.passes import Passes
 from skybake.clouds.transfer import Entering, Floats, Scattering, Voxels
 from skybake.jit.workers import Workers
@@ -29,6 +29,16 @@ ROUGH = 1e-3
 FINE = 1.5e-4
 """Tolerance of what starts from there. Drawn cumuli then keep their light to 5e-4."""
 
+FAR = 6e-4
+"""The same under suns over clouds that are far away, which start from the light of the next sun."""
+
+
+class Known(NamedTuple):
+    """Moments of a channel: in cloudy voxels, and in merged ones if those were solved for."""
+
+    moments: Floats
+    merged: Floats | None
+
 
 class Diffuse(NamedTuple):
     """Diffuse light of a layer.
@@ -41,16 +51,23 @@ class Diffuse(NamedTuple):
         Mean irradiances of horizontal planes: upward at the top, and downward at the base.
     passes : int
         How many it took, those on merged voxels included.
+    known : tuple of Known
+        By channel, from which light under another sun may start.
     """
 
     moments: Floats
     up: Array
     down: Array
     passes: int
+    known: tuple[Known, ...]
 
 
 def solve_diffuse(
-    voxels: Voxels, scattering: Scattering, entering: Entering, workers: Workers
+    voxels: Voxels,
+    scattering: Scattering,
+    entering: Entering,
+    workers: Workers,
+    near: tuple[Known, ...] | None = None,
 ) -> Diffuse:
     """Solve for the diffuse light of all channels.
 
@@ -64,6 +81,8 @@ def solve_diffuse(
         Light from outside.
     workers : Workers
         Threads that do the work, a channel each.
+    near : tuple of Known, optional
+        Light of the same voxels under another sun, from which to start.
 
     Returns
     -------
@@ -81,49 +100,54 @@ def solve_diffuse(
     moments = np.empty((channels, levels, rows, harmonics, columns), np.float32)
     up, down, passes = np.empty(channels), np.empty(channels), np.zeros(channels, int)
 
-    def solve(channel: int, like: _Known | None) -> _Known:
-        light = Entering(*(part[channel : channel + 1] for part in entering))
-        solved = _solve_channel(voxels, scattering, light, moments[channel], like)
-        up[channel], down[channel], passes[channel], merged = solved
-        return _Known(moments[channel], merged)
+    known: list[Known | None] = [None] * channels
 
-    # Particles are grey, so that channels differ in little but their brightness.
+    def solve(channel: int, like: Known | None, tolerance: float) -> None:
+        light = Entering(*(part[channel : channel + 1] for part in entering))
+        made = Passes(voxels, scattering, light)
+        solved, passes[channel] = _solve_channel(voxels, scattering, light, made, like, tolerance)
+        up[channel], down[channel] = made.finish(solved.moments, moments[channel])
+        known[channel] = solved
+
     middle = channels // 2
-    known = solve(middle, None)
-    others = [channel for channel in range(channels) if channel != middle]
+    others = list(range(channels))
+    if near is None:
+        # Particles are grey, so that channels differ in little but their brightness.
+        solve(middle, None, FINE)
+        others.remove(middle)
 
     def work(first: int, last: int) -> None:
         for channel in others[first:last]:
-            solve(channel, known)
+            if near is None:
+                solve(channel, known[middle], FINE)
+            else:
+                solve(channel, near[channel], FAR)
 
     workers.run_rows(len(others), work)
-    return Diffuse(moments, up, down, int(passes.max()))
-
-
-class _Known(NamedTuple):
-    """Moments of a channel: in the voxels, and in merged ones if those were solved for."""
-
-    moments: Floats
-    merged: Floats | None
+    solved = tuple(each for each in known if each is not None)
+    return Diffuse(moments, up, down, int(passes.max()), solved)
 
 
 def _solve_channel(
-    voxels: Voxels, scattering: Scattering, entering: Entering, out: Floats, like: _Known | None
-) -> tuple[float, float, int, Floats | None]:
-    passes = Passes(voxels, scattering, entering)
+    voxels: Voxels,
+    scattering: Scattering,
+    entering: Entering,
+    passes: Passes,
+    like: Known | None,
+    tolerance: float,
+) -> tuple[Known, int]:
     if not _can_merge(voxels, LARGE):
-        out[...] = 0.0
-        return *passes.until_settled(out, MAX_PASSES, TOLERANCE), None
-    merged, before = _merged_light(voxels, scattering, entering, out.shape[2])
+        known, number = passes.until_settled(passes.dark(), MAX_PASSES, TOLERANCE)
+        return Known(known, None), number
+    merged, before = _merged_light(voxels, scattering, entering)
     if like is None or like.merged is None:
-        spread_pairs(merged, out)
+        start = passes.spread(merged)
     else:
         # What merging loses is lost of both alike: only what they differ in is spread.
         alike = _share_alike(merged, like.merged)
-        spread_pairs(merged - alike * like.merged, out)
-        out += alike * like.moments
-    up, down, number = passes.until_settled(out, MAX_PASSES, FINE)
-    return up, down, before + number, merged
+        start = passes.spread(merged - alike * like.merged) + alike * like.moments
+    known, number = passes.until_settled(start, MAX_PASSES, tolerance)
+    return Known(known, merged), before + number
 
 
 def _share_alike(light: Floats, other: Floats) -> np.float32:
@@ -132,20 +156,20 @@ def _share_alike(light: Floats, other: Floats) -> np.float32:
     return np.float32(float(np.vdot(light, other)) / square if square > 0.0 else 0.0)
 
 
-def _merged_light(
-    voxels: Voxels, scattering: Scattering, entering: Entering, harmonics: int
-) -> tuple[Floats, int]:
+def _merged_light(voxels: Voxels, scattering: Scattering, entering: Entering) -> tuple[Floats, int]:
     """Return the moments in merged voxels, and how many passes that took."""
     merged = _merge(voxels)
     levels, rows, columns = merged.extinction.shape
     light = entering._replace(sun=merge_levels(entering.sun, levels))
-    state = np.zeros((levels, rows, harmonics, columns), np.float32)
-    number = 0
+    passes = Passes(merged, scattering, light)
+    start, before = passes.dark(), 0
     if _can_merge(merged, SMALL):
-        coarser, number = _merged_light(merged, scattering, light, harmonics)
-        spread_pairs(coarser, state)
-    *_, more = Passes(merged, scattering, light).until_settled(state, MAX_PASSES, ROUGH)
-    return state, number + more
+        coarser, before = _merged_light(merged, scattering, light)
+        start = passes.spread(coarser)
+    known, number = passes.until_settled(start, MAX_PASSES, ROUGH)
+    moments = np.empty((levels, rows, (scattering.order + 1) ** 2, columns), np.float32)
+    passes.finish(known, moments)
+    return moments, before + number
 
 
 def _can_merge(voxels: Voxels, least: int) -> bool:

@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from skybake.clouds.air import ClearAir, Light
 from skybake.clouds.beam import LEAST_SLOPE, fill_beam
-from skybake.clouds.diffuse import Diffuse, solve_diffuse
+from skybake.clouds.diffuse import Diffuse, Known, solve_diffuse
 from skybake.clouds.harmonics import degrees
-from skybake.clouds.light import LayerLight
+from skybake.clouds.light import LayerLight, half_words
 from skybake.clouds.merging import merge_pairs
 from skybake.clouds.particles import Particles
 from skybake.clouds.quadrature import Quadrature, cell_samples, double_gauss
@@ -113,6 +113,7 @@ def solve_layer(
     air: ClearAir,
     weights: Array,
     suns: Array,
+    own: int,
     around: Surroundings,
     reflectance: Array,
     workers: Workers,
@@ -132,6 +133,8 @@ def solve_layer(
         positive, as XYZ are.
     suns : ndarray of float64, shape (sun, 3)
         Unit vectors toward the sun, in the order of their z.
+    own : int
+        Which of them stands over the observer: it is solved for first, and most exactly.
     around : Surroundings
         Other layers.
     reflectance : ndarray of float64, shape (channel,)
@@ -141,24 +144,30 @@ def solve_layer(
     """
     quadrature, turn = directions_of(particles, suns[0])
     harmonics, channels = (particles.order + 1) ** 2, weights.shape[1]
-    shape = len(suns), *grid.extinction.shape, 1 + channels * harmonics
-    volume = np.empty(shape, np.float32)
+    depth = np.empty((len(suns), *grid.extinction.shape), np.float32)
+    moments = np.empty((*depth.shape, channels * harmonics), np.uint16)
     leaving = np.empty((len(suns), *grid.extinction.shape[1:]), np.float32)
     irradiance = np.empty((len(suns), grid.extinction.shape[0], channels))
     mean = np.empty_like(irradiance)
     down, down_clear = np.empty((len(suns), channels)), np.empty((len(suns), channels))
-    for s, sun in enumerate(suns):
+    known: dict[int, tuple[Known, ...]] = {}
+    for s in [*range(own, len(suns)), *range(own - 1, -1, -1)]:
+        sun = suns[s]
         voxels, leaving[s] = shine(grid, particles.fraction, sun)
         entering = enter(grid, quadrature, turn, air, weights, sun, around, reflectance)
         scattering = Scattering(particles.order, quadrature, particles.moments, sun)
-        diffuse = solve_diffuse(voxels, scattering, entering, workers)
-        fill_volume(voxels, diffuse, volume[s])
+        near = known.get(s - 1) if s > own else known.get(s + 1)
+        diffuse = solve_diffuse(voxels, scattering, entering, workers, near)
+        known[s] = diffuse.known
+        depth[s] = -np.log(np.maximum(voxels.beam, 1e-30))
+        fill_moments(diffuse, moments[s])
         irradiance[s] = entering.sun.T
         mean[s] = diffuse.moments[:, :, :, 0].mean(axis=(2, 3), dtype=float).T
         down[s], down_clear[s] = diffuse.down, entering.down
     degree = degrees(particles.order)
     light = LayerLight(
-        volume=volume,
+        depth=depth,
+        moments=moments,
         spacing=grid.spacing,
         base=grid.base,
         sun_mu=np.ascontiguousarray(suns[:, 2]),
@@ -191,13 +200,12 @@ def shine(grid: Grid, fraction: float, sun: Array) -> tuple[Voxels, Floats]:
     return Voxels(extinction, grid.spacing, mean, float(leaving.mean())), leaving
 
 
-def fill_volume(voxels: Voxels, diffuse: Diffuse, out: Floats) -> None:
-    """Interleave what rays look up, shape (z, y, x, 1 + channel * harmonic)."""
-    out[..., 0] = -np.log(np.maximum(voxels.beam, 1e-30))
+def fill_moments(diffuse: Diffuse, out: npt.NDArray[np.uint16]) -> None:
+    """Interleave what rays look up, shape (z, y, x, channel * harmonic)."""
     harmonics = diffuse.moments.shape[3]
     for channel, moments in enumerate(diffuse.moments):
-        first = 1 + channel * harmonics
-        out[..., first : first + harmonics] = moments.transpose(0, 1, 3, 2)
+        first = channel * harmonics
+        out[..., first : first + harmonics] = half_words(moments).transpose(0, 1, 3, 2)
 
 
 def enter(

@@ -43,29 +43,60 @@ class Sweep(NamedTuple):
     length: npt.NDArray[np.float64]
 
 
+class SweepScratch(NamedTuple):
+    """Work space of `sweep`.
+
+    Attributes
+    ----------
+    place : ndarray of int32, shape (cell,)
+        Of the rays that meet the cells of a chunk.
+    source, entering : ndarray of float32, shape (cell,)
+        In these cells.
+    value : ndarray of float32, shape (direction, cell)
+        Mean radiances in these cells.
+    active : ndarray of int64, shape (direction,)
+        Directions of these.
+    """
+
+    place: npt.NDArray[np.int32]
+    source: Floats
+    entering: Floats
+    value: Floats
+    active: npt.NDArray[np.int64]
+
+
+def allocate_sweep(directions: int, cells: int) -> SweepScratch:
+    """Make the work space for directions of a hemisphere and the most cells of a chunk."""
+    return SweepScratch(
+        place=np.empty(cells, np.int32),
+        source=np.empty(cells, np.float32),
+        entering=np.empty(cells, np.float32),
+        value=np.empty((directions, cells), np.float32),
+        active=np.empty(directions, np.int64),
+    )
+
+
 @kernel
-def sweep(extinction, hemisphere, is_upward, beam, light, total, radiance, source, value, moments):
+def sweep(cells, hemisphere, is_upward, light, known, radiance, scratch, moments):
     """Carry light along all directions of a hemisphere, plane by plane.
 
     Parameters
     ----------
-    extinction : ndarray of float32, shape (z, y, x)
-        Without forward peaks; periodic in y and x. [km⁻¹]
+    cells : Cells
+        Voxels in which light is gathered, of a tile that is periodic in y and x. Others are empty.
     hemisphere : Sweep
         Directions, which all go down or all go up.
     is_upward : bool
         Which.
-    beam : ndarray of float32, shape (z, y, x)
-        Mean of the sun's beam.
     light : ndarray of float32, shape (z,)
         Irradiance of that beam above the layer, by altitude.
-    total : ndarray of float32, shape (z, y, harmonic, x)
-        Moments of the diffuse radiance, as known so far.
-    radiance : ndarray of float32, shape (direction, y, x)
+    known : ndarray of float32, shape (cell * harmonic,)
+        Moments of the diffuse radiance, as known so far, see `take_moments`.
+    radiance : ndarray of float32, shape (direction, y * x)
         What enters, on the lattice of rays; receives what leaves.
-    source, value : ndarray of float32, shape (x,)
+    scratch : SweepScratch
         Work space.
-    moments : ndarray of float32, shape (z, y, harmonic, x)
+    moments : ndarray of float32, shape (cell * harmonic,)
         To which the moments of the radiance are added.
 
     Notes
@@ -74,15 +105,22 @@ def sweep(extinction, hemisphere, is_upward, beam, light, total, radiance, sourc
     voxel that is nearest: no interpolation, so nothing is smeared, and energy is kept. Rows of a
     plane stay in the cache while all directions pass.
     """
-    levels, rows, columns = extinction.shape
+    levels = cells.chunks.size - 1
+    rows, columns = cells.rows, cells.columns
     directions, harmonics = hemisphere.scatter.shape
+    source, entering, active = scratch.source, scratch.entering, scratch.active
     most = np.int64(1)
     for d in range(directions):
         most = max(most, hemisphere.parts[d])
     for q in range(levels):
         k = q if is_upward else levels - 1 - q
         for part in range(most):
-            for j in range(rows):
+            for chunk in range(cells.chunks[k], cells.chunks[k + 1]):
+                begin, end = cells.first[chunk], cells.first[chunk + 1]
+                row, column = cells.row[begin:end], cells.column[begin:end]
+                met, beam = cells.extinction[begin:end], cells.beam[begin:end]
+                lit = known[begin * harmonics : end * harmonics]
+                count = 0
                 for d in range(directions):
                     parts = hemisphere.parts[d]
                     if part >= parts:
@@ -90,29 +128,93 @@ def sweep(extinction, hemisphere, is_upward, beam, light, total, radiance, sourc
                     along = q + (part + 0.5) / parts
                     shift_x = math.floor(along * hemisphere.along[d, 0] + 0.5) % columns
                     shift_y = math.floor(along * hemisphere.along[d, 1] + 0.5) % rows
-                    row = j - shift_y
-                    if row < 0:
-                        row += rows
+                    _scatter(
+                        beam, hemisphere.sunlight[d] * light[k], lit, hemisphere.scatter[d], source
+                    )
                     step = np.float32(hemisphere.length[d] / parts)
                     share = np.float32(1.0 / parts)
-                    weight = hemisphere.sunlight[d] * light[k]
-                    for i in range(columns):
-                        source[i] = weight * beam[k, j, i]
-                    for p in range(harmonics):
-                        weight = hemisphere.scatter[d, p]
-                        known = total[k, j, p]
-                        for i in range(columns):
-                            source[i] += weight * known[i]
-                    ray = radiance[d, row]
-                    met = extinction[k, j]
-                    _cross(met[shift_x:], source[shift_x:], ray, step, share, value[shift_x:])
-                    rest = columns - shift_x
-                    _cross(met[:shift_x], source[:shift_x], ray[rest:], step, share, value)
-                    for p in range(harmonics):
-                        weight = hemisphere.project[d, p]
-                        gathered = moments[k, j, p]
-                        for i in range(columns):
-                            gathered[i] += weight * value[i]
+                    value = scratch.value[count]
+                    if cells.is_whole:
+                        at = row[0] - shift_y
+                        at += rows if at < 0 else 0
+                        ray = radiance[d, at * columns : (at + 1) * columns]
+                        rest = columns - shift_x
+                        _cross(met[shift_x:], source[shift_x:], ray, step, share, value[shift_x:])
+                        _cross(met[:shift_x], source[:shift_x], ray[rest:], step, share, value)
+                    else:
+                        ray = radiance[d]
+                        _place(row, column, shift_y, shift_x, rows, columns, scratch.place)
+                        for n in range(row.size):
+                            entering[n] = ray[scratch.place[n]]
+                        _cross(met, source, entering, step, share, value)
+                        for n in range(row.size):
+                            ray[scratch.place[n]] = entering[n]
+                    active[count] = d
+                    count += 1
+                gathered = moments[begin * harmonics : end * harmonics]
+                _gather(scratch.value, active[:count], hemisphere.project, gathered, row.size)
+
+
+@kernel
+def _place(row, column, shift_y, shift_x, rows, columns, place):
+    """Write where on a lattice that is shifted by so many voxels rays are that meet cells."""
+    down, left, height, width = (
+        np.int32(shift_y),
+        np.int32(shift_x),
+        np.int32(rows),
+        np.int32(columns),
+    )
+    for n in range(row.size):
+        j, i = row[n] - down, column[n] - left
+        j += height if j < 0 else np.int32(0)
+        i += width if i < 0 else np.int32(0)
+        place[n] = np.int32(j * width + i)
+
+
+@kernel
+def _scatter(beam, sunlight, known, scatter, source):
+    """Write what a row of voxels scatters into a direction."""
+    size, harmonics = beam.size, scatter.size
+    for i in range(size):
+        source[i] = sunlight * beam[i]
+    # Four at a time, so that few sums go through memory.
+    whole = harmonics // 4 * 4
+    for p in range(0, whole, 4):
+        a, b, c, d = scatter[p], scatter[p + 1], scatter[p + 2], scatter[p + 3]
+        k, m, n, o = (
+            known[p * size :],
+            known[(p + 1) * size :],
+            known[(p + 2) * size :],
+            known[(p + 3) * size :],
+        )
+        for i in range(size):
+            source[i] += a * k[i] + b * m[i] + c * n[i] + d * o[i]
+    for p in range(whole, harmonics):
+        a, k = scatter[p], known[p * size :]
+        for i in range(size):
+            source[i] += a * k[i]
+
+
+@kernel
+def _gather(value, active, project, moments, size):
+    """Add the moments of radiances along some directions to those of a row of voxels."""
+    harmonics = project.shape[1]
+    whole = active.size // 4 * 4
+    for first in range(0, whole, 4):
+        w, x = active[first], active[first + 1]
+        y, z = active[first + 2], active[first + 3]
+        k, m, n, o = value[first], value[first + 1], value[first + 2], value[first + 3]
+        for p in range(harmonics):
+            a, b, c, d = project[w, p], project[x, p], project[y, p], project[z, p]
+            total = moments[p * size :]
+            for i in range(size):
+                total[i] += a * k[i] + b * m[i] + c * n[i] + d * o[i]
+    for first in range(whole, active.size):
+        w, k = active[first], value[first]
+        for p in range(harmonics):
+            a, total = project[w, p], moments[p * size :]
+            for i in range(size):
+                total[i] += a * k[i]
 
 
 @kernel

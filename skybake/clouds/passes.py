@@ -5,11 +5,18 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
+from skybake.clouds.cells import (
+    CHUNK,
+    all_cells,
+    cloudy_cells,
+    mean_change,
+    put_moments,
+    spread_moments,
+)
 from skybake.clouds.harmonics import degrees, harmonics_of
 from skybake.clouds.mixing import Mixing
-from skybake.clouds.ordinates import Sweep, sweep
+from skybake.clouds.ordinates import Sweep, allocate_sweep, sweep
 from skybake.clouds.transfer import Entering, Floats, Scattering, Voxels
 from skybake.jit.arguments import Flat, flatten
 
@@ -29,66 +36,72 @@ class Passes:
         ]
         self._flat_sweeps = [flatten(each) for each in self._sweeps]
         _, rows, columns = voxels.extinction.shape
-        self._grid = flatten(voxels.extinction), flatten(voxels.beam)
+        # Light between clouds scatters nothing: it is gathered once, at the end.
+        self.cells = cloudy_cells(voxels)
+        self._cloudy, self._all = flatten(self.cells), flatten(all_cells(voxels))
+        self._harmonics = (scattering.order + 1) ** 2
         self._light = entering.sun[0].astype(np.float32)
         half = len(quadrature.weight) // 2
-        self._radiance = np.empty((half, rows, columns), np.float32)
-        self._scratch = (
-            flatten(np.empty(columns, np.float32)),
-            flatten(np.empty(columns, np.float32)),
-        )
+        self._radiance = np.empty((half, rows * columns), np.float32)
+        self._scratch = flatten(allocate_sweep(half, max(columns, CHUNK)))
         self._leaving = voxels.leaving
-        self._cloudy = voxels.extinction > 0.0
 
-    def until_settled(self, state: Floats, most: int, tolerance: float) -> tuple[float, float, int]:
-        """Iterate in place; return the fluxes up and down, and how many passes it took."""
-        # Light between clouds scatters nothing, and is not mixed.
-        cloudy = np.nonzero(self._cloudy)
-        mixing = Mixing(cloudy[0].size * state.shape[2])
-        image = np.empty_like(state)
-        up = down = 0.0
-        for number in range(1, most + 1):
-            up, down = self._advance(state, image)
-            change = _mean_change(state, image, self._cloudy)
-            if change > tolerance and number < most:
-                mixed = _take(state, cloudy)
-                mixing.step(mixed, _take(image, cloudy))
-                _put(mixed, cloudy, state)
-                continue
-            state[...] = image
+    def dark(self) -> Floats:
+        """Return moments of cloudy voxels without light."""
+        return np.zeros(self.cells.row.size * self._harmonics, np.float32)
+
+    def spread(self, merged: Floats) -> Floats:
+        """Return moments of cloudy voxels from those of merged voxels, (z, y, harmonic, x)."""
+        known = self.dark()
+        spread_moments(self._cloudy, merged, known)
+        return known
+
+    def until_settled(self, known: Floats, most: int, tolerance: float) -> tuple[Floats, int]:
+        """Iterate from moments of cloudy voxels; return others, and how many passes it took."""
+        new = np.empty_like(known)
+        mixing = Mixing(known.size)
+        for number in range(1, most):
+            self._advance(self._cloudy, known, new)
+            change = mean_change(self._cloudy, self._harmonics, known, new)
             if change <= tolerance:
-                break
-        return up, down, number
+                return new, number
+            mixing.step(known, new)
+        return known, most - 1
 
-    def _advance(self, state: Floats, image: Floats) -> tuple[float, float]:
-        """Write the moments that follow from those of `state` to `image`; return the fluxes."""
+    def finish(self, known: Floats, out: Floats) -> tuple[float, float]:
+        """Write the moments of all voxels, (z, y, harmonic, x); return the fluxes up and down."""
+        before = np.zeros_like(out)
+        put_moments(self._cloudy, known, before)
+        # In chunks of a row these are moments of cells.
+        return self._advance(self._all, before.reshape(-1), out.reshape(-1))
+
+    def _advance(self, cells: Flat, known: Floats, new: Floats) -> tuple[float, float]:
+        """Write the moments that follow from the known ones; return the fluxes."""
         entering, quadrature = self._entering, self._quadrature
-        image[...] = 0.0
-        known, new = flatten(state), flatten(image)
-        self._radiance[...] = entering.above[0][:, None, None]
-        self._sweep(0, known, new)
-        down = float(quadrature.flux(self._radiance.mean(axis=(1, 2), dtype=float)))
+        new[...] = 0.0
+        given = flatten(known), flatten(new)
+        self._radiance[...] = entering.above[0][:, None]
+        self._sweep(cells, 0, *given)
+        down = float(quadrature.flux(self._radiance.mean(axis=1, dtype=float)))
         # Light from below is that of clear air, as far as the light comes that makes it.
         lit = self._leaving * entering.sun_share[0]
         sunlight = entering.down_sun[0] * lit
         share = (down + sunlight) / (entering.down[0] + entering.down_sun[0] + 1e-300)
         below = share * entering.below[0] + lit * entering.below_lit[0]
-        self._radiance[...] = below[:, None, None]
-        self._sweep(1, known, new)
-        up = float(quadrature.flux(self._radiance.mean(axis=(1, 2), dtype=float)))
+        self._radiance[...] = below[:, None]
+        self._sweep(cells, 1, *given)
+        up = float(quadrature.flux(self._radiance.mean(axis=1, dtype=float)))
         return up, down
 
-    def _sweep(self, side: int, known: Flat, new: Flat) -> None:
-        extinction, beam = self._grid
+    def _sweep(self, cells: Flat, side: int, known: Flat, new: Flat) -> None:
         sweep(
-            extinction,
+            cells,
             self._flat_sweeps[side],
             side == 1,
-            beam,
             self._light,
             known,
             self._radiance,
-            *self._scratch,
+            self._scratch,
             new,
         )
 
@@ -113,24 +126,3 @@ def _hemisphere(voxels: Voxels, scattering: Scattering, part: slice) -> Sweep:
         parts=np.ones_like(parts) if single else np.maximum(parts, 1),
         length=length,
     )
-
-
-def _take(moments: Floats, at: tuple[npt.NDArray[np.intp], ...]) -> Floats:
-    """Moments of some voxels, flat."""
-    levels, rows, columns = at
-    taken: Floats = moments.transpose(0, 1, 3, 2)[levels, rows, columns].reshape(-1)
-    return taken
-
-
-def _put(values: Floats, at: tuple[npt.NDArray[np.intp], ...], out: Floats) -> None:
-    """Write what `_take` returns."""
-    levels, rows, columns = at
-    out.transpose(0, 1, 3, 2)[levels, rows, columns] = values.reshape(-1, out.shape[2])
-
-
-def _mean_change(state: Floats, image: Floats, cloudy: npt.NDArray[np.bool_]) -> float:
-    """Relative change of the mean radiance in cloud."""
-    if not cloudy.any():
-        return 0.0
-    before, after = (each[:, :, 0][cloudy] for each in (state, image))
-    return float(np.abs(after - before).mean() / max(float(np.abs(after).mean()), 1e-30))

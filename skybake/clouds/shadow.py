@@ -9,7 +9,7 @@ from skybake.clouds.light import sun_share
 from skybake.jit.kernel import kernel
 
 SAMPLES = 6
-"""Places in each stretch of a ray at which the sun is looked for."""
+"""Places in each stretch of a ray at which the sun is looked for, at most; a voxel each will do."""
 
 
 @kernel
@@ -42,11 +42,12 @@ def dim_visibility(
         direction = directions[n]
         for q in range(stretches):
             begin, end = distances[n, q], distances[n, q + 1]
+            samples = min(max(math.ceil((end - begin) / light.spacing[2]), 1), SAMPLES)
             total = 0.0
-            for i in range(SAMPLES):
-                s = begin + (end - begin) * (i + 0.5) / SAMPLES
+            for i in range(samples):
+                s = begin + (end - begin) * (i + 0.5) / samples
                 total += _visible(field, light, leaving, radius, altitude, direction, s, sun)
-            out[n, q] *= total / SAMPLES
+            out[n, q] *= total / samples
         s = distances[n, stretches] * (1.0 - 1e-9)
         out[n, stretches] *= _visible(field, light, leaving, radius, altitude, direction, s, sun)
 
@@ -60,7 +61,7 @@ def _visible(field, light, leaving, radius, altitude, direction, distance, sun):
     h = r - radius
     mu_s = (sun[0] * px + sun[1] * py + sun[2] * above) / r
     base = light.base
-    top = base + light.volume.shape[1] * light.spacing[0]
+    top = base + light.depth.shape[1] * light.spacing[0]
     is_behind = h < base if mu_s > 0.0 else h > top
     if not is_behind and not base <= h <= top:
         return 1.0
@@ -69,12 +70,12 @@ def _visible(field, light, leaving, radius, altitude, direction, distance, sun):
     which = int(place)
     share = place - which
     if not is_behind:
-        k = min(int((h - base) / light.spacing[0]), light.volume.shape[1] - 1)
+        k = min(int((h - base) / light.spacing[0]), light.depth.shape[1] - 1)
         j = math.floor(y / light.spacing[1]) % leaving.shape[1]
         i = math.floor(x / light.spacing[2]) % leaving.shape[2]
-        depth = float(light.volume[which, k, j, i, 0])
+        depth = float(light.depth[which, k, j, i])
         if share > 0.0:
-            depth += share * (light.volume[which + 1, k, j, i, 0] - depth)
+            depth += share * (light.depth[which + 1, k, j, i] - depth)
         return math.exp(-depth)
     face = base if mu_s > 0.0 else top
     chord = r * r * mu_s * mu_s + (face - h) * (2.0 * radius + face + h)

@@ -20,7 +20,7 @@ from skybake.optics.medium import Array
 
 Floats = npt.NDArray[np.float32]
 
-RAYS = 512
+RAYS = 2048
 """Rays that a thread takes at a time."""
 
 

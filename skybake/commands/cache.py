@@ -104,6 +104,7 @@ def warm(presets: tuple[str, ...], for_all_users: bool, quiet: bool) -> None:
 
     check_cache()
 
+    from skybake.aerial.warm import compile_air
     from skybake.baking.warm import compile_all, solve
     from skybake.luts.warm import compile_kernels
     from skybake.preset import load_preset
@@ -113,6 +114,7 @@ def warm(presets: tuple[str, ...], for_all_users: bool, quiet: bool) -> None:
         load_preset(preset)
     say("compiling kernels")
     solve(presets, say)
+    compile_air()
     compile_all()
     compile_kernels()
     if for_all_users:

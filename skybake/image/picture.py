@@ -40,12 +40,17 @@ def picture_ev(scene: Scene, settings: PictureSettings) -> float:
 
 
 def show_scene(
-    scene: Scene, show: Show, ev: float, white: Array | None, projection: Projection
+    scene: Scene,
+    show: Show,
+    ev: float,
+    white: Array | None,
+    projection: Projection,
+    pixels: Pixels | None = None,
 ) -> None:
-    """Make the preview of a scene."""
+    """Make the preview of a scene, of its pixels in the projection if they are known."""
     encoding = scene.settings.encoding
-    pixels = balanced(_single(scene, projection), encoding.space, white)
-    show(pixels, encoding.space, gain(encoding, ev))
+    shown = _single(scene, projection) if pixels is None else pixels
+    show(balanced(shown, encoding.space, white), encoding.space, gain(encoding, ev))
 
 
 def thumbnail(scene: Scene, ev: float, settings: PictureSettings, width: int) -> CodeValues:

@@ -44,6 +44,27 @@ def look_frame(azimuth: float, elevation: float) -> Frame:
     )
 
 
+def roll_frame(frame: Frame, roll: float) -> Frame:
+    """Turn a picture about its middle.
+
+    Parameters
+    ----------
+    frame : Frame
+        Its axes.
+    roll : float
+        How far the camera is turned clockwise about where it looks, so that what it shows turns
+        counterclockwise. [rad]
+    """
+    if roll == 0.0:
+        return frame
+    sine, cosine = math.sin(roll), math.cos(roll)
+    return Frame(
+        right=cosine * frame.right - sine * frame.up,
+        up=cosine * frame.up + sine * frame.right,
+        forward=frame.forward,
+    )
+
+
 def check_look(azimuth: float, elevation: float) -> None:
     """Refuse an invalid direction.
 

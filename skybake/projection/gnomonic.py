@@ -34,12 +34,21 @@ class GnomonicChart(Chart):
         Tangents of half the angles that the picture covers.
     width, height : int
         [pixel]
+    shift : tuple of float, optional
+        Where on the plane the middle of the picture is: right of the axis, and above it.
     """
 
     def __init__(
-        self, frame: Frame, half_width: float, half_height: float, width: int, height: int
+        self,
+        frame: Frame,
+        half_width: float,
+        half_height: float,
+        width: int,
+        height: int,
+        shift: tuple[float, float] = (0.0, 0.0),
     ) -> None:
         self.frame = frame
+        self.shift = shift
         self.width, self.height = width, height
         self.half_width, self.half_height = half_width, half_height
 
@@ -57,7 +66,8 @@ class GnomonicChart(Chart):
         frame = self.frame
         before = vectors @ frame.forward
         with np.errstate(divide="ignore", invalid="ignore"):
-            u, v = vectors @ frame.right / before, -(vectors @ frame.up) / before
+            u = vectors @ frame.right / before - self.shift[0]
+            v = self.shift[1] - vectors @ frame.up / before
             column = 0.5 * self.width * (u / self.half_width + 1.0)
             row = 0.5 * self.height * (v / self.half_height + 1.0)
         shown = (before > 0.0) & (np.abs(2.0 * column / self.width - 1.0) <= 1.0 + _ROUNDING)
@@ -92,11 +102,13 @@ class GnomonicChart(Chart):
         )
         (left, right), (top, bottom) = bounds
         half_width, half_height = self.half_width, self.half_height
+        # Of the picture's left and top on the plane.
+        first_u, first_v = self.shift[0] - half_width, -self.shift[1] - half_height
         columns, cell_width = subdivide(
-            left + half_width, right + half_width, 2.0 * half_width / width, radius, (0, width)
+            left - first_u, right - first_u, 2.0 * half_width / width, radius, (0, width)
         )
         rows, cell_height = subdivide(
-            top + half_height, bottom + half_height, 2.0 * half_height / height, radius, (0, height)
+            top - first_v, bottom - first_v, 2.0 * half_height / height, radius, (0, height)
         )
         column, row = (grid.ravel() for grid in np.meshgrid(columns, rows))
         u, v = self._plane(column, row)
@@ -108,10 +120,10 @@ class GnomonicChart(Chart):
         return cells_of_one_texel(vectors, centre, radius, size, texel, texel_size)
 
     def _plane(self, column: npt.NDArray[Any], row: npt.NDArray[Any]) -> tuple[Array, Array]:
-        """Places on the plane, right and down of its middle, given in pixels."""
+        """Places on the plane, right and down of its axis, given in pixels."""
         return (
-            2.0 * self.half_width * column / self.width - self.half_width,
-            2.0 * self.half_height * row / self.height - self.half_height,
+            2.0 * self.half_width * column / self.width - self.half_width + self.shift[0],
+            2.0 * self.half_height * row / self.height - self.half_height - self.shift[1],
         )
 
     def _vectors(self, u: Array, v: Array) -> Array:
@@ -136,8 +148,9 @@ class GnomonicChart(Chart):
         self, x: float, y: float, z: float, radius: float
     ) -> tuple[tuple[float, float], tuple[float, float]]:
         """Ranges of u and v that hold a disc around (x, y, z); empty if the picture misses it."""
-        nowhere = (2.0 * self.half_width,) * 2, (2.0 * self.half_height,) * 2
-        corner = math.atan(math.hypot(self.half_width, self.half_height))
+        across, along = map(abs, self.shift)
+        nowhere = (across + 2.0 * self.half_width,) * 2, (along + 2.0 * self.half_height,) * 2
+        corner = math.atan(math.hypot(self.half_width + across, self.half_height + along))
         if z < math.cos(min(corner + radius, math.pi / 2.0 - radius)):
             return nowhere
         from_middle = math.acos(min(z, 1.0))

@@ -25,6 +25,7 @@ _ANGLES = {
     "fov_deg": "fov",
     "look_azimuth_deg": "azimuth",
     "look_elevation_deg": "elevation",
+    "roll_deg": "roll",
 }
 
 
@@ -96,6 +97,9 @@ def _recipe_projection(shown: Mapping[str, Any]) -> Projection | None:
             options["space"] = shown["cube_space"]
         if "equirect_rows" in shown:
             options["rows"] = shown["equirect_rows"]
+        if "lens_shift" in shown:
+            right, up = shown["lens_shift"]
+            options["shift"] = float(right), float(up)
         return find_projection(shown["projection"], None, options)
     except (InputError, TypeError, ValueError, OverflowError):
         return None

@@ -8,19 +8,25 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
 
 from skybake.errors import InputError
+from skybake.projection.camera import Camera
 from skybake.projection.cells import Array
 from skybake.projection.chart import Canvas, Projection, check_edge, size_text, whole
-from skybake.projection.frame import check_look, look_frame, look_label
+from skybake.projection.frame import check_look, look_frame, look_label, roll_frame
 from skybake.projection.gnomonic import GnomonicChart
 from skybake.units import degrees
 
 WIDEST = math.radians(170.0)
 LARGEST_PREVIEW = 1920
+UPRIGHT = 1e-6
+"""Roll below which it is rounding. [rad]"""
+
+FARTHEST_SHIFT = 10.0
+"""[width of the picture]"""
 
 
 @dataclass(frozen=True)
 class Perspective(Projection):
-    """A flat picture, held upright.
+    """A flat picture.
 
     Attributes
     ----------
@@ -29,7 +35,13 @@ class Perspective(Projection):
     fov : float
         Angle that the width covers, greater than 0 and at most `WIDEST`. [rad]
     azimuth, elevation : float
-        Compass bearing and height of the middle. [rad]
+        Compass bearing and height of the camera's axis, which is the middle of the picture if the
+        lens is not shifted. [rad]
+    roll : float
+        How far the camera is turned from upright, see `roll_frame`. [rad]
+    shift : tuple of float
+        How far the lens moves the picture's middle from the axis, to the right and upward, in
+        widths of the picture.
     """
 
     name: ClassVar[str] = "perspective"
@@ -38,6 +50,8 @@ class Perspective(Projection):
     fov: float = math.radians(50.0)
     azimuth: float = math.pi
     elevation: float = 0.0
+    roll: float = 0.0
+    shift: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         """Refuse what cannot be baked."""
@@ -49,6 +63,13 @@ class Perspective(Projection):
                 f"perspective picture, got {math.degrees(self.fov):g}deg"
             )
         check_look(self.azimuth, self.elevation)
+        if not math.isfinite(self.roll):
+            raise InputError(f"roll: must be finite, got {self.roll}")
+        if not all(abs(shift) <= FARTHEST_SHIFT for shift in self.shift):
+            raise InputError(
+                f"lens shift: must be at most {FARTHEST_SHIFT:g} widths of the picture, "
+                f"got {self.shift[0]:g} and {self.shift[1]:g}"
+            )
 
     @classmethod
     def of_size(cls, size: tuple[int, ...] | None, options: Mapping[str, Any]) -> Self:
@@ -69,7 +90,9 @@ class Perspective(Projection):
     def label(self) -> str:
         """How file names denote it."""
         look = look_label(self.azimuth, self.elevation)
-        return f"{self.name}_{look}_fov{math.degrees(self.fov):g}deg"
+        roll = "" if self.roll == 0.0 else f"_roll{math.degrees(self.roll):g}deg"
+        shift = "" if self.shift == (0.0, 0.0) else f"_shift{self.shift[0]:g}_{self.shift[1]:g}"
+        return f"{self.name}_{look}_fov{math.degrees(self.fov):g}deg{roll}{shift}"
 
     def recipe(self) -> dict[str, Any]:
         """Size, angle of view and direction."""
@@ -80,6 +103,8 @@ class Perspective(Projection):
             "fov_deg": degrees(self.fov),
             "look_azimuth_deg": degrees(self.azimuth),
             "look_elevation_deg": degrees(self.elevation),
+            **({} if self.roll == 0.0 else {"roll_deg": degrees(self.roll)}),
+            **({} if self.shift == (0.0, 0.0) else {"lens_shift": list(self.shift)}),
         }
 
     def smaller(self, width: int) -> Projection:
@@ -90,7 +115,30 @@ class Perspective(Projection):
     def glance(self, width: int) -> Projection:
         """Return the same picture of another width."""
         height = max(1, round(self.height * width / self.width))
-        return Perspective(width, height, self.fov, self.azimuth, self.elevation)
+        return replace(self, width=width, height=height)
+
+    @classmethod
+    def of_camera(cls, camera: Camera, width: int) -> Self:
+        """Return what a camera sees from the middle of the world, with square pixels.
+
+        Parameters
+        ----------
+        camera : Camera
+            Whose proportions the picture has.
+        width : int
+            [pixel]
+        """
+        azimuth, elevation, roll = camera.angles
+        right, up = (part / (2.0 * camera.half_width) for part in camera.shift)
+        return cls(
+            width=width,
+            height=max(1, round(width * camera.half_height / camera.half_width)),
+            fov=2.0 * math.atan(camera.half_width),
+            azimuth=azimuth,
+            elevation=elevation,
+            roll=0.0 if abs(roll) < UPRIGHT else roll,
+            shift=(right, up),
+        )
 
     def finer(self, times: int) -> Perspective:
         """Return the same picture of that many times the width and the height."""
@@ -105,7 +153,10 @@ class Perspective(Projection):
         return self._chart().vectors(0, self.height)
 
     def _chart(self) -> GnomonicChart:
-        frame = look_frame(self.azimuth, self.elevation)
+        frame = roll_frame(look_frame(self.azimuth, self.elevation), self.roll)
         half_width = math.tan(0.5 * self.fov)
         half_height = half_width * self.height / self.width
-        return GnomonicChart(frame, half_width, half_height, self.width, self.height)
+        right, up = (2.0 * half_width * part for part in self.shift)
+        return GnomonicChart(
+            frame, half_width, half_height, self.width, self.height, shift=(right, up)
+        )

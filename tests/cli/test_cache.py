@@ -3,8 +3,10 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from tests.aerial.pictures import beauty, write_exr
 from tests.cli.runs import AS_A_USER, SMALL, run
 
 
@@ -153,7 +155,11 @@ def test_after_warm_nothing_is_compiled(tmp_path, cold):
 
     compiled = kernels()
     assert compiled
-    for use in USES:
+    write_exr(tmp_path / "in.exr", beauty(np.full((4, 4), 5000.0)))
+    camera = {"azimuth": 0, "elevation": 0, "fov": 50}
+    (tmp_path / "camera.json").write_text(json.dumps(camera))
+    picture = ("aerial", "--beauty", "in.exr", "--camera", "camera.json", "--method")
+    for use in (*USES, (*picture, "march"), (*picture, "froxel")):
         status, _, errors = run(*use, "-q", "-o", "a.exr", cwd=tmp_path, env=cold)
         assert (status, errors) == (0, "")
     status, _, errors = run("luts", "-q", "-o", "tables", cwd=tmp_path, env=cold)

@@ -8,6 +8,8 @@ import click
 import pytest
 
 import skybake
+from skybake.aerial import bake
+from skybake.aerial.depth import BACKGROUNDS
 from skybake.cli import main
 from skybake.colour.exposure import UNITS
 from skybake.colour.space import COLOUR_SPACES
@@ -15,9 +17,11 @@ from skybake.commands.options import choices
 from skybake.commands.render import render
 from skybake.formats.preview import VIEWS
 from skybake.image import settings
+from skybake.image.aim import AIMS
 from skybake.image.target import TARGETS
 from skybake.preset import preset_names
 from skybake.projection import PROJECTIONS
+from skybake.projection.camera_file import UNITS as UNITS_OF_CAMERAS
 from skybake.projection.cubemap import LAYOUTS, SPACES
 from skybake.projection.equirect import ROWS
 from skybake.sky.sky import METHODS
@@ -110,6 +114,12 @@ def test_choices_are_those_of_the_engine():
     assert choices.SUN_DISCS == settings.SUN_DISCS
     assert choices.METHODS == METHODS
     assert choices.VIEWS == VIEWS
+    assert choices.AIMS == AIMS
+    assert choices.AERIAL_METHODS == bake.METHODS
+    assert choices.DEPTH_KINDS == bake.DEPTH_KINDS
+    assert choices.SKIES_BEHIND == bake.SKIES
+    assert tuple(BACKGROUNDS) == choices.DEPTH_BACKGROUNDS
+    assert set(choices.CAMERA_UNITS) == set(UNITS_OF_CAMERAS)
 
 
 def test_defaults_are_those_of_the_engine():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from skybake.clouds.footprint import rays_per_side, see_pixels
-from skybake.clouds.light import LayerLight
+from skybake.clouds.light import LayerLight, half_words
 from skybake.clouds.march import Marching
 from skybake.clouds.particles import TERMS
 from skybake.clouds.sight import Eye
@@ -21,7 +21,8 @@ RADIUS = 6360.0
 def light_of(clouds):
     """Light of no matter: one voxel that is the same everywhere."""
     return LayerLight(
-        volume=np.full((1, 1, 1, 1, 2), 0.1, np.float32),
+        depth=np.full((1, 1, 1, 1), 0.1, np.float32),
+        moments=half_words(np.full((1, 1, 1, 1, 1), 0.1, np.float32)),
         spacing=np.array([clouds.top - clouds.base, *clouds.period[::-1]]),
         base=float(clouds.base),
         sun_mu=np.array([0.5]),

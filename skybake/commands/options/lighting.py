@@ -2,32 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from skybake.commands.options import choices
 from skybake.commands.options.maps import map_options
-from skybake.commands.options.rules import Needs, options_together
+from skybake.commands.options.rules import Needs, options_together, some_of
 
 if TYPE_CHECKING:
     from skybake.ibl.program import Program
 
 _SHARED = ("rotate", "colorspace", "units", "ev", "sun_size", "sun_soft", "sun_strength", "method")
 """Options of `map_options` that lighting maps have as well."""
-
-
-def _shared_options() -> Iterator[Callable[[Any], Any]]:
-    """Yield the options of `_SHARED`, as they are of maps."""
-    command = click.command()(map_options(lambda **_: None))
-    for option in command.params:
-        if option.name in _SHARED:
-            yield click.option(cls=_same(option))
-
-
-def _same(option: click.Parameter) -> Any:
-    return lambda *_, **__: option
 
 
 def _parts(text: str) -> tuple[str, ...]:
@@ -108,7 +96,7 @@ lighting_options = options_together(
         show_default="include",
         help="Whether the sun is in the maps, or left to a light of the program.",
     ),
-    *_shared_options(),
+    *some_of(map_options, *_SHARED),
     click.option(
         "--format",
         "file_format",

@@ -299,11 +299,7 @@ def map_settings(options: Mapping[str, Any], **others: Any) -> MapSettings:
     """
     from skybake.image import settings
 
-    given = {
-        name: options[name]
-        for name in _ENCODINGS
-        if options[name] is not None and options[name] is not False
-    }
+    given = given_settings(options)
     shape = {own: options[name] for name, own in _SHAPES.items() if options[name] is not None}
     if options["look"] is not None:
         shape["azimuth"], shape["elevation"] = options["look"]
@@ -315,3 +311,9 @@ def map_settings(options: Mapping[str, Any], **others: Any) -> MapSettings:
         )
     except InputError as error:
         raise click.UsageError(f"--{error}") from error
+
+
+def given_settings(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the settings of light and storage that options give, by name."""
+    given = {name: options.get(name) for name in _ENCODINGS}
+    return {name: value for name, value in given.items() if value not in (None, False)}

@@ -89,13 +89,13 @@ def picture_from_options(options: Mapping[str, Any], ev: float | str | None) -> 
     Parameters
     ----------
     options : mapping
-        With the values of `look_options`.
+        With the values of `look_options`, or of those of them that a command has.
     ev : float, str or None
         Exposure value, as of `PictureSettings`.
     """
     from skybake.image.picture_settings import PictureSettings, shot
 
-    view = options["shot"]
+    view = options.get("shot")
     return PictureSettings(
         ev=ev,  # type: ignore[arg-type]
         view=options["view"] or choices.VIEWS[0],

@@ -35,6 +35,18 @@ def options_together(*options: Decorator) -> Callable[[Command], Command]:
     return add
 
 
+def some_of(options: Decorator, *names: str) -> Iterator[Decorator]:
+    """Yield those options of several that have some names, in the order of the help."""
+    command = click.command()(options(lambda **_: None))
+    for option in command.params:
+        if option.name in names:
+            yield click.option(cls=_same(option))
+
+
+def _same(option: click.Parameter) -> Any:
+    return lambda *_, **__: option
+
+
 def is_given(context: click.Context, name: str) -> bool:
     """Whether an option was typed."""
     return context.get_parameter_source(name) is not ParameterSource.DEFAULT
