@@ -36,7 +36,7 @@ def check_targets(
     if light_files:
         from skybake.sidecar.light_file import check_light_files
 
-        check_light_files(light_files, settings.view.projection.name, map_paths(output, settings))
+        check_light_files(light_files, settings.view.projection, map_paths(output, settings))
 
 
 def _check_encoding(path: Path, settings: MapSettings) -> None:

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from skybake.constants import ASTRONOMICAL_UNIT
 from skybake.ephemeris import earth
 from skybake.ephemeris.place import GROUND_RADII
+from skybake.ephemeris.refraction import ON_HORIZON, SCALE_HEIGHT, Refraction
 from skybake.errors import ArgumentError
 
 _SUN_RADIUS = 695_700.0  # km
 
-# The almanacs' convention: refraction on the horizon, and the sun's radius from 1 au.
-_REFRACTION = math.radians(34.0 / 60.0)
+# The almanacs' convention: the sun's radius from 1 au.
 _RADIUS_ON_EARTH = math.radians(16.0 / 60.0)
 
 
@@ -56,11 +56,21 @@ class Horizon:
     def lift(self, elevation: float) -> float:
         """Return by how much refraction raises the sun at a geometric elevation. [rad]
 
-        That of sea level, counted from the horizon, which is what raises a sun on it.
+        At sea level it is Sæmundsson's. Higher up it is what `Refraction` finds, to which
+        Sæmundsson's difference from it at sea level is added, as far as there is air; both
+        count from what is seen on the horizon.
         """
         if not self.refraction or self.planet != "earth":
             return 0.0
-        return earth.refraction(elevation + self.dip)
+        if self.altitude == 0.0:
+            return earth.refraction(elevation)
+        air = Refraction(self.altitude)
+        at_sea = elevation - air.set - ON_HORIZON
+        rest = earth.refraction(at_sea) - Refraction(0.0).lift(at_sea)
+        # The air raises the ground's edge as well, which maps show at the dip.
+        kept = (-self.dip - air.set) / (air.horizon - air.set)
+        lift = kept * air.lift(elevation) + rest * math.exp(-self.altitude / SCALE_HEIGHT)
+        return max(lift, 0.0)
 
     def risen(self, sun_distance: float) -> float:
         """Return the elevation at which the sun's upper edge appears on the horizon.
@@ -73,9 +83,15 @@ class Horizon:
         Returns
         -------
         float
-            Geometric, of the sun's centre: on Earth -50', or -16' without refraction, less
-            the dip. [rad]
+            Geometric, of the sun's centre: at sea level on Earth -50', or -16' without
+            refraction; the dip lower from above the ground, where rays are bent more. [rad]
         """
         if self.planet == "earth":
-            return -_RADIUS_ON_EARTH - _REFRACTION * self.refraction - self.dip
+            return -_RADIUS_ON_EARTH + self._edge()
         return -math.asin(_SUN_RADIUS / (sun_distance * ASTRONOMICAL_UNIT)) - self.dip
+
+    def _edge(self) -> float:
+        """Geometric elevation of what is seen on the horizon of Earth. [rad]"""
+        if not self.refraction:
+            return -self.dip
+        return -ON_HORIZON if self.altitude == 0.0 else Refraction(self.altitude).set

@@ -44,9 +44,8 @@ def lock_hidden_folder(folder: Path) -> int | None:
             continue
         if lock is None:
             return None
-        with suppress(FileNotFoundError):
-            if os.path.samestat(os.fstat(lock), folder.stat()):
-                return lock
+        if _is_still(folder, lock):
+            return lock
         os.close(lock)
 
 
@@ -81,10 +80,19 @@ def is_ours(folder: Path) -> bool:
 def _locked(folder: Path) -> Iterator[bool]:
     lock = _lock(folder)
     try:
-        yield lock is not None
+        # One that was removed meanwhile may be back, and another process' own.
+        yield lock is not None and _is_still(folder, lock)
     finally:
         if lock is not None:
             os.close(lock)
+
+
+def _is_still(folder: Path, lock: int) -> bool:
+    """Whether a folder of this name is still the one that was locked."""
+    try:
+        return os.path.samestat(os.fstat(lock), folder.stat())
+    except FileNotFoundError:
+        return False
 
 
 def _lock(folder: Path) -> int | None:

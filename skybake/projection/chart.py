@@ -151,12 +151,9 @@ class Projection(ABC):
     ----------
     name : str
         By which users select it.
-    lights_a_dome : bool
-        Whether a dome light of USD takes its maps everywhere.
     """
 
     name: ClassVar[str]
-    lights_a_dome: ClassVar[bool] = False
 
     @classmethod
     @abstractmethod

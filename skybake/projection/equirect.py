@@ -201,7 +201,6 @@ class Equirect(Projection):
     """
 
     name: ClassVar[str] = "equirect"
-    lights_a_dome: ClassVar[bool] = True
     width: int = 2048
     rows: str = "centres"
 

@@ -91,7 +91,7 @@ def solve_aureole(
     ).reshape(len(radius), -1, 4)
     moments = peak_moments(atmosphere.medium, scaled)
     first = _peaks_of_straight(atmosphere, rays, workers).reshape(*shape, -1)
-    first -= _straight(atmosphere, grid, around, moments)[:, :, :, None]
+    first -= straight_light(atmosphere, grid, around.cosine, moments)[:, :, :, None]
     first *= fade(np.arccos(around.cosine))[:, None, None]
     aureole = _scattered(atmosphere, grid, around, moments, first)
     difference = first + _transport(atmosphere, aureole, field, rays, workers).reshape(first.shape)
@@ -117,13 +117,29 @@ def _peaks_of_straight(atmosphere: Atmosphere, rays: Array, workers: Workers) ->
     return radiance
 
 
-def _straight(
-    atmosphere: Atmosphere, grid: Grid, around: Rings, moments: Array
+def straight_light(
+    atmosphere: Atmosphere, grid: Grid, cosine: Array, moments: Array
 ) -> npt.NDArray[np.float32]:
-    """Radiance of straight light around the sun, shape (altitude, sun, ring, wavelength).
+    """Radiance that peaks alone have scattered if each path went straight from the sun.
 
     What arrives by n scatterings within peaks on a depth y has the moments of a peak
     to the power of n, weighted by y^n / n! exp(-extinction).
+
+    Parameters
+    ----------
+    atmosphere : Atmosphere
+        Its medium and columns.
+    grid : Grid
+        Nodes of altitude and sun.
+    cosine : ndarray, shape (angle,)
+        Of angles from the sun.
+    moments : ndarray, shape (constituent, `SERIES_ORDER` + 1, wavelength)
+        Of the peaks.
+
+    Returns
+    -------
+    ndarray of float32, shape (altitude, sun, angle, wavelength)
+        [sr⁻¹]
     """
     medium, scaled = pad_wavelengths(atmosphere.medium), atmosphere.scaled
     mu_s = np.cos(grid.sun_angle)
@@ -136,9 +152,9 @@ def _straight(
     share /= np.maximum(share.sum(axis=0), 1e-300)
     mean = np.einsum("cw,clw->lw", share, moments)
     degree = np.arange(SERIES_ORDER + 1)
-    polynomials = legendre_polynomials(around.cosine, SERIES_ORDER)
+    polynomials = legendre_polynomials(cosine, SERIES_ORDER)
     polynomials *= ((2 * degree + 1) / (4.0 * math.pi))[:, None]
-    straight = np.empty((*depth.shape[:2], around.cosine.size, depth.shape[2]), np.float32)
+    straight = np.empty((*depth.shape[:2], cosine.size, depth.shape[2]), np.float32)
     for i in range(len(depth)):
         series = np.exp(depth[i] * mean[:, None] - extinction[i]) - np.exp(-extinction[i])
         straight[i] = np.einsum("lq,ljw->jqw", polynomials, series, optimize=True)

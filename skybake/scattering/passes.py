@@ -17,7 +17,7 @@ from skybake.optics.medium import Array
 from skybake.scattering.fans import group_rays
 from skybake.scattering.field import DiffuseField
 from skybake.scattering.grid import ORDER, Grid, empty_field, no_field, project
-from skybake.scattering.horizon_peaks import no_horizon_peaks
+from skybake.scattering.horizon_peaks import HorizonPeaks, no_horizon_peaks
 from skybake.scattering.multiple import add_diffuse, allocate_scratch, side_by_side
 from skybake.scattering.ray import trace_rays
 from skybake.scattering.tables import Atmosphere
@@ -50,7 +50,7 @@ def scatter_sunlight(
     series = scaled.moments * ((2 * degree + 1) / (4.0 * math.pi))[:, None]
     radiances = np.empty((grid.altitude.size, *_shape(grid), scaled.mixture.size), np.float32)
     for i in range(grid.altitude.size):
-        rays = _rays_at(scaled, grid, i)
+        rays = rays_at(scaled, grid, i)
         light = trace_rays(without_peaks, *rays.T, max_arc=FIRST_ARC, workers=workers)
         polynomials = legendre_polynomials(rays[:, 3], ORDER)
         radiance = light.diffuse
@@ -61,7 +61,7 @@ def scatter_sunlight(
     return field, radiances
 
 
-def _rays_at(scaled: ScaledMedium, grid: Grid, node: int) -> Array:
+def rays_at(scaled: ScaledMedium, grid: Grid, node: int) -> Array:
     """Rays in all directions of an altitude's node for all suns, shape (ray, 4)."""
     mu, sun, azimuth = np.meshgrid(grid.mu[node], grid.sun_angle, grid.azimuth, indexing="ij")
     mu_s = np.cos(sun)
@@ -91,7 +91,7 @@ def trace_grid(scaled: ScaledMedium, grid: Grid) -> list[Batch]:
     shells = altitude_shells(scaled.medium, SHELLS)
     batches = []
     for node in range(grid.altitude.size):
-        fans = group_rays(_rays_at(scaled, grid, node))
+        fans = group_rays(rays_at(scaled, grid, node))
         begin, end = 0, len(fans.starts)
         while begin < end:
             samples = allocate_samples(scaled.medium)
@@ -108,11 +108,31 @@ def scatter_field(
 
     Returns moments and radiance as `scatter_sunlight` does.
     """
-    nodes, wavelengths = grid.altitude.size, field.ground.shape[1]
-    out = np.zeros((nodes, math.prod(_shape(grid)), wavelengths), np.float32)
-    light = [
-        flatten(each) for each in (field, side_by_side(field), no_horizon_peaks(scaled), scaled)
-    ]
+    radiance = transport_field(scaled, field, no_horizon_peaks(scaled), grid, batches, workers)
+    scattered = field._replace(
+        radiance=np.empty_like(field.radiance), ground=np.empty_like(field.ground)
+    )
+
+    def store(first: int, last: int) -> None:
+        for i in range(first, last):
+            project(grid, i, radiance[i], scattered)
+
+    workers.run_rows(len(radiance), store)
+    return scattered, radiance
+
+
+def transport_field(
+    scaled: ScaledMedium,
+    field: DiffuseField,
+    peaks: HorizonPeaks,
+    grid: Grid,
+    batches: list[Batch],
+    workers: Workers,
+) -> npt.NDArray[np.float32]:
+    """Radiance at a grid's nodes of a field that is scattered once, as `scatter_sunlight`'s."""
+    shape = *_shape(grid), field.ground.shape[1]
+    out = np.zeros((grid.altitude.size, math.prod(shape[:-1]), shape[-1]), np.float32)
+    light = [flatten(each) for each in (field, side_by_side(field), peaks, scaled)]
 
     def work(first: int, last: int) -> None:
         for batch in batches[first:last]:
@@ -121,14 +141,4 @@ def scatter_field(
             add_diffuse(*light, *rays, scratch, out[batch.node])
 
     workers.run_rows(len(batches), work)
-    scattered = field._replace(
-        radiance=np.empty_like(field.radiance), ground=np.empty_like(field.ground)
-    )
-    shape = *_shape(grid), wavelengths
-
-    def store(first: int, last: int) -> None:
-        for i in range(first, last):
-            project(grid, i, out[i].reshape(shape), scattered)
-
-    workers.run_rows(nodes, store)
-    return scattered, out.reshape(nodes, *shape)
+    return out.reshape(-1, *shape)

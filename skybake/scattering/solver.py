@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
 from skybake.errors import TooThickError
 from skybake.jit.workers import ALL_CPUS, Workers
-from skybake.optics.delta_m import ScaledMedium, peak_moments
+from skybake.optics.delta_m import ScaledMedium
 from skybake.optics.medium import Array
 from skybake.scattering.anderson import Anderson
 from skybake.scattering.aureole_solver import has_aureole, solve_aureole
@@ -117,20 +116,12 @@ def solve_light(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> Atmosphe
             if has_aureole(atmosphere):
                 # The field's moments are settled since, which changes the difference little.
                 radiance += radiance_of_first
-                atmosphere = _with_horizon_peaks(atmosphere, grid, radiance)
+                peaks = solve_horizon_peaks(atmosphere, grid, radiance, workers)
+                atmosphere = atmosphere._replace(horizon_peaks=peaks)
             return atmosphere._replace(field=field)
         if not np.isfinite(change).all():
             break
     raise _no_convergence(MAX_PASSES, TOLERANCE, float(change.max()))
-
-
-def _with_horizon_peaks(
-    atmosphere: Atmosphere, grid: Grid, radiance: npt.NDArray[np.float32]
-) -> Atmosphere:
-    """Add what peaks scatter of the diffuse radiance at a grid's nodes across the horizon."""
-    moments = peak_moments(atmosphere.medium, atmosphere.scaled)
-    peaks = solve_horizon_peaks(atmosphere.scaled, grid, moments, radiance)
-    return atmosphere._replace(horizon_peaks=peaks)
 
 
 def _settle(

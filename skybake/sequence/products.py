@@ -101,7 +101,7 @@ class Products:
                 )
             if path.suffix.lower() == ".usda":
                 maps = seen_from(path.parent, [frame.output for frame in self.plan.frames])
-                check_usd(path, _header(self).projection, maps)
+                check_usd(path, self.plan.frames[0].settings.view.projection, maps)
             else:
                 check_target(path)
         if self.contact_sheet is not None:

@@ -3,6 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
+
+from skybake.errors import InputError
+from skybake.projection.chart import Projection
+from skybake.projection.equirect import Equirect
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,3 +65,31 @@ class DomeAndSun:
     sun_angular_diameter_deg: float
     sun_colour: tuple[float, float, float]
     sun_illuminance_lux: float
+
+
+def check_dome(path: Path, dome: str, projection: Projection) -> None:
+    """Refuse maps that a dome shows elsewhere than they are.
+
+    Parameters
+    ----------
+    path : Path
+        File with the dome.
+    dome : str
+        What shows the maps, for messages.
+    projection : Projection
+        Of the maps.
+
+    Raises
+    ------
+    InputError
+        If they are not equirect, which is the only kind that every dome takes, or their first
+        and last rows are the poles.
+    """
+    if not isinstance(projection, Equirect):
+        raise InputError(
+            f"{path}: {dome} needs maps of the projection equirect, got {projection.name}"
+        )
+    if projection.rows != "centres":
+        raise InputError(
+            f"{path}: {dome} needs maps with centred rows, got equirect rows {projection.rows!r}"
+        )

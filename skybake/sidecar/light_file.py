@@ -11,9 +11,9 @@ from skybake.errors import InputError
 from skybake.formats.spec import Attribute
 from skybake.formats.targets import check_target, faults_of
 from skybake.formats.whole_files import WholeFiles
-from skybake.projection import PROJECTIONS
+from skybake.projection.chart import Projection
 from skybake.sidecar.blender import blender_script
-from skybake.sidecar.dome_and_sun import Common, DomeAndSun
+from skybake.sidecar.dome_and_sun import Common, DomeAndSun, check_dome
 from skybake.sidecar.light_json import light_json
 from skybake.sidecar.map_light import MapLight
 from skybake.sidecar.usd import check_usd, usd_layer
@@ -23,15 +23,15 @@ SUFFIXES = (".json", ".usda", ".py")
 """JSON, Pixar's USD, and a script for Blender."""
 
 
-def check_light_files(paths: Iterable[Path], projection: str, files: Sequence[Path]) -> None:
+def check_light_files(paths: Iterable[Path], projection: Projection, files: Sequence[Path]) -> None:
     """Raise the errors of light files that can be found before anything is computed.
 
     Parameters
     ----------
     paths : iterable of Path
         Each with one of `SUFFIXES`.
-    projection : str
-        Of the map, a key of `skybake.projection.PROJECTIONS`.
+    projection : Projection
+        Of the map.
     files : sequence of Path
         The map.
 
@@ -85,7 +85,7 @@ def seen_from(folder: Path, files: Sequence[Path]) -> list[str]:
     return [Path(os.path.relpath(file, folder)).as_posix() for file in files]
 
 
-def _check(path: Path, projection: str, files: Sequence[Path]) -> None:
+def _check(path: Path, projection: Projection, files: Sequence[Path]) -> None:
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         raise InputError(
@@ -94,10 +94,8 @@ def _check(path: Path, projection: str, files: Sequence[Path]) -> None:
         )
     if suffix == ".usda":
         check_usd(path, projection, seen_from(path.parent, files))
-    elif suffix == ".py" and not PROJECTIONS[projection].lights_a_dome:
-        raise InputError(
-            f"{path}: the world of Blender needs a map of the projection equirect, got {projection}"
-        )
+    elif suffix == ".py":
+        check_dome(path, "the world of Blender", projection)
     check_target(path)
 
 

@@ -16,8 +16,8 @@ from skybake.colour.space import find_colour_space
 from skybake.errors import InputError
 from skybake.formats.targets import check_target
 from skybake.formats.text import is_plain_line
-from skybake.projection import PROJECTIONS
-from skybake.sidecar.dome_and_sun import Common, DomeAndSun
+from skybake.projection.chart import Projection
+from skybake.sidecar.dome_and_sun import Common, DomeAndSun, check_dome
 from skybake.version import __version__
 
 _SUN_IS_IN_MAPS = (
@@ -26,33 +26,29 @@ _SUN_IS_IN_MAPS = (
 )
 
 
-def check_usd(path: Path, projection: str, files: Iterable[str] = ()) -> None:
+def check_usd(path: Path, projection: Projection, files: Iterable[str] = ()) -> None:
     """Raise the errors of a USD file that can be found before anything is computed.
 
     Parameters
     ----------
     path : Path
         ``.usda``.
-    projection : str
-        Of the maps, a key of `skybake.projection.PROJECTIONS`.
+    projection : Projection
+        Of the maps.
     files : iterable of str, optional
         The maps, as seen from the USD file's folder.
 
     Raises
     ------
     InputError
-        If the suffix is not ``.usda``, if the maps are not equirect, which is the only
-        kind that every dome light supports, or if the name of one has a character
-        that USD cannot hold.
+        If the suffix is not ``.usda``, if `check_dome` refuses the maps, or if the name of
+        one has a character that USD cannot hold.
     OutputError
         If a file cannot be written under that name.
     """
     if path.suffix.lower() != ".usda":
         raise InputError(f"{path}: suffix of a USD file must be .usda, got {path.suffix!r}")
-    if not PROJECTIONS[projection].lights_a_dome:
-        raise InputError(
-            f"{path}: a dome light of USD needs maps of the projection equirect, got {projection}"
-        )
+    check_dome(path, "a dome light of USD", projection)
     for file in files:
         _asset(path, file)
     check_target(path)

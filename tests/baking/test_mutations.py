@@ -13,7 +13,7 @@ from tests.baking.maps import bake_map, pixels
 from tests.preset.test_mutations import mutants
 
 
-def bakes_finite_map_or_refuses(folder, preset, method):
+def bakes_finite_map_or_refuses(folder, preset, method, clouds_quality):
     path = folder / "own.toml"
     path.write_text(toml_text(preset), encoding="utf-8")
     refusal = None
@@ -21,7 +21,8 @@ def bakes_finite_map_or_refuses(folder, preset, method):
         warnings.simplefilter("ignore", PresetWarning)
         try:
             planet = load_preset(path)
-            bake_map(folder / "a.exr", planet, 5.0, size=16, pixel="float", method=method)
+            options = {"pixel": "float", "method": method, "clouds_quality": clouds_quality}
+            bake_map(folder / "a.exr", planet, 5.0, size=16, **options)
         except SkybakeError as error:
             refusal = str(error)
     if refusal is None:
@@ -35,11 +36,11 @@ def bakes_finite_map_or_refuses(folder, preset, method):
 @settings(max_examples=5)
 @given(mutants())
 def test_a_mutated_preset_is_refused_in_a_line_or_becomes_a_finite_map(tmp_path_factory, preset):
-    bakes_finite_map_or_refuses(tmp_path_factory.mktemp("mutant"), preset, "hillaire")
+    bakes_finite_map_or_refuses(tmp_path_factory.mktemp("mutant"), preset, "hillaire", "draft")
 
 
 @pytest.mark.slow
 @settings(max_examples=200)
 @given(mutants())
 def test_two_hundred_mutated_presets_are_refused_or_become_finite_maps(tmp_path_factory, preset):
-    bakes_finite_map_or_refuses(tmp_path_factory.mktemp("mutant"), preset, "full")
+    bakes_finite_map_or_refuses(tmp_path_factory.mktemp("mutant"), preset, "full", "normal")

@@ -260,7 +260,7 @@ def test_lights_and_map_appear_together_or_not_at_all(small_disk):
     ("name", "projection", "fault", "reason"),
     [
         ("a.usda", "cubemap", InputError, "needs maps of the projection equirect, got cubemap"),
-        ("a.py", "octahedral", InputError, "needs a map of the projection equirect, got octa"),
+        ("a.py", "octahedral", InputError, "needs maps of the projection equirect, got octa"),
         ("a.txt", "equirect", InputError, "must be one of .json, .usda, .py, got '.txt'"),
         ("absent/a.json", "equirect", OutputError, "folder must exist"),
     ],
@@ -271,4 +271,14 @@ def test_what_cannot_be_written_is_said_before_anything_is(
     settings = map_settings(projection, 16)
     with pytest.raises(fault, match=reason):
         bake("earth", tmp_path / "a.exr", settings, lights=[tmp_path / name])
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("suffix", [".usda", ".py"])
+def test_a_dome_is_refused_a_map_whose_first_and_last_rows_are_the_poles(tmp_path, suffix):
+    settings = map_settings(size=16, rows="poles")
+    with pytest.raises(
+        InputError, match=r"needs maps with centred rows, got equirect rows 'poles'"
+    ):
+        bake("earth", tmp_path / "a.exr", settings, lights=[tmp_path / f"a{suffix}"])
     assert list(tmp_path.iterdir()) == []
