@@ -11,7 +11,7 @@ from zoneinfo import ZoneInfo
 import numpy as np
 import pytest
 
-from skybake.commands.options.values import latitude, longitude
+from skybake.commands.options.celestial import latitude, longitude
 from skybake.ephemeris.earth import refraction, sun_position
 from skybake.ephemeris.mars import mars_time, sun_in_season
 from skybake.ephemeris.place import SITES, Place

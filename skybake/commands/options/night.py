@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from skybake.commands.options import values
+from skybake.commands.options import celestial, values
 from skybake.commands.options.rules import Needs, options_together
 from skybake.errors import InputError
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 stars_option = click.option(
     "--stars",
     metavar="include|exclude|only|MAGNITUDE",
-    type=values.stars,
+    type=celestial.stars,
     show_default="include, with a time",
     help="Whether the map holds the stars, or nothing else, or those up to a magnitude; where they "
     "stand is known with a time, or with --lst.",
@@ -54,7 +54,7 @@ lst_option = click.option(
     "--lst",
     "sidereal_time",
     metavar="HOURS|ANGLE",
-    type=values.sidereal_time,
+    type=celestial.sidereal_time,
     help="Local sidereal time, such as 18.6h, 18:36 or 279deg, with --lat: how the stars of J2000 "
     "stand, wherever the sun is; over Mars in its worlds, over Earth in all others.",
 )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from skybake.commands.options import values
+from skybake.commands.options import celestial, values
 from skybake.commands.options.rules import Decorator, Needs, options_together
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def sun_distance_option() -> Decorator:
     return click.option(
         "--sun-distance",
         metavar="AU|mean|date",
-        type=values.sun_distance,
+        type=celestial.sun_distance,
         help="How far the sun is, which sets its light and the size of its disc: in au, the "
         "preset's mean, or as on the date, which is the default with a time.",
     )
@@ -62,7 +62,7 @@ def moon_options(times: str) -> Decorator:
         click.option(
             "--moon",
             metavar="AZIMUTH,ELEVATION[,DIAMETER[,DISTANCE]]",
-            type=values.moon,
+            type=celestial.moon,
             help="Moon in front of the sun; by default as large and as far as Earth's on average, "
             "0.518deg and 384400km. A distance of inf is one without parallax.",
         ),

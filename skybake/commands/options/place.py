@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from skybake.commands.options import values
+from skybake.commands.options import celestial
 from skybake.commands.options.rules import (
     Needs,
     is_given,
@@ -26,14 +26,14 @@ place_options = options_together(
         "--lat",
         "latitude",
         metavar="ANGLE",
-        type=values.latitude,
+        type=celestial.latitude,
         help="Latitude: 48.8566, 48.8566N or -54.8deg.",
     ),
     click.option(
         "--lon",
         "longitude",
         metavar="ANGLE",
-        type=values.longitude,
+        type=celestial.longitude,
         help="Longitude, positive in the east: 2.3522, 78.47W or -78.47deg.",
     ),
     click.option(
@@ -45,7 +45,7 @@ place_options = options_together(
         "--ls",
         "solar_longitude",
         metavar="ANGLE",
-        type=values.solar_longitude,
+        type=celestial.solar_longitude,
         help="Season on Mars, the sun's longitude Ls; times are then of local true solar time.",
     ),
     click.option(
@@ -58,7 +58,7 @@ place_options = options_together(
         "--date",
         "day",
         metavar="YYYY-MM-DD|today",
-        type=values.day,
+        type=celestial.day,
         help="Local date of sunset, noon and the like; also tomorrow or yesterday.",
     ),
     click.option(
@@ -110,7 +110,7 @@ def day_from_options(context: click.Context, place: Place) -> date | None:
         zone = mean_solar_zone(place) if name is None else find_zone(name)
     except InputError as error:
         raise click.UsageError(f"--tz: {error}") from error
-    return (datetime.now(zone) + timedelta(days=values.DAYS_FROM_TODAY[day])).date()
+    return (datetime.now(zone) + timedelta(days=celestial.DAYS_FROM_TODAY[day])).date()
 
 
 def place_from_options(context: click.Context, time: str) -> Place:

@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
-from contextlib import suppress
-from datetime import date
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import click
 
@@ -17,16 +15,13 @@ from skybake.sequence.frames import parse_frames
 from skybake.sequence.ramp import Ramp
 from skybake.units import parse_angle, parse_duration, parse_length
 
-if TYPE_CHECKING:
-    from skybake.ephemeris.moon import Moon
-
 COLDEST, HOTTEST = 1000.0, 25_000.0
-DAYS_FROM_TODAY = {"yesterday": -1, "today": 0, "tomorrow": 1}
 
 Paths = TypeVar("Paths", Path | None, tuple[Path, ...])
 
 # The tolerance is for 5400arcmin, which differs from 90deg in the last bit.
-_RIGHT_ANGLE = math.pi / 2 + 1e-9
+RIGHT_ANGLE = math.pi / 2 + 1e-9
+"""A quarter of a turn. [rad]"""
 
 _MOST_TURNS = 1000
 _WIDEST = math.radians(170.0)
@@ -36,65 +31,23 @@ _FASTEST = 1000.0
 
 _PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".gif", ".tif", ".tiff")
 
-# As of star.distance_au in presets. [au]
-_NEAREST, _FARTHEST = 1e-3, 1e5
-
 # Click shows the message of a click.BadParameter, but only the value of a ValueError.
 
 
 def elevation(text: str) -> float:
     """Read an angle from -90deg to 90deg. [rad]"""
-    angle = _parse(text, parse_angle)
-    if abs(angle) > _RIGHT_ANGLE:
+    angle = parsed(text, parse_angle)
+    if abs(angle) > RIGHT_ANGLE:
         raise click.BadParameter(f"must be from -90deg to 90deg, got {text}")
     return angle
 
 
 def bearing(text: str) -> float:
     """Read an angle of up to a thousand turns; many more would leave it no precision. [rad]"""
-    angle = _parse(text, parse_angle)
-    if abs(angle) > 4 * _RIGHT_ANGLE * _MOST_TURNS:
+    angle = parsed(text, parse_angle)
+    if abs(angle) > 4 * RIGHT_ANGLE * _MOST_TURNS:
         raise click.BadParameter(f"must be at most {_MOST_TURNS} turns, got {text}")
     return angle
-
-
-def latitude(text: str) -> float:
-    """Read a latitude such as ``48.8566``, ``54.8S`` or ``-54.8deg``. [rad]"""
-    angle = _hemisphere(text, "N", "S")
-    if abs(angle) > _RIGHT_ANGLE:
-        raise click.BadParameter(f"must be from -90deg to 90deg, got {text}")
-    return angle
-
-
-def longitude(text: str) -> float:
-    """Read a longitude, -180deg to 360deg in the east; it becomes -180deg to 180deg. [rad]"""
-    angle = _hemisphere(text, "E", "W")
-    if not -2 * _RIGHT_ANGLE <= angle <= 4 * _RIGHT_ANGLE:
-        raise click.BadParameter(f"must be from -180deg to 360deg, got {text}")
-    return math.remainder(angle, 2 * math.pi)
-
-
-def sidereal_time(text: str) -> float:
-    """Read hours such as ``18h``, ``18.6h`` or ``18:36``, or an angle from 0deg to 360deg. [rad]"""
-    found = re.fullmatch(r"(\d{1,2}):([0-5]\d)|(\d{1,2}(?:\.\d+)?)h", text.strip(), re.ASCII)
-    if found is None:
-        return solar_longitude(text)
-    hours = float(found[3]) if found[3] else int(found[1]) + int(found[2]) / 60.0
-    if hours > 24.0:
-        raise click.BadParameter(f"must be from 0h to 24h, got {text}")
-    return math.radians(15.0 * hours)
-
-
-def stars(text: str) -> float | str:
-    """Read ``include``, ``exclude``, ``only`` or a magnitude, which is checked by settings."""
-    if text in {"include", "exclude", "only"}:
-        return text
-    try:
-        return float(text)
-    except ValueError:
-        raise click.BadParameter(
-            f"must be include, exclude, only or a magnitude such as 4.5, got {text!r}"
-        ) from None
 
 
 def scale(text: str) -> float:
@@ -105,63 +58,9 @@ def scale(text: str) -> float:
         raise click.BadParameter(f"must be a number such as 1.5, got {text!r}") from None
 
 
-def solar_longitude(text: str) -> float:
-    """Read an angle from 0deg to 360deg. [rad]"""
-    angle = _parse(text, parse_angle)
-    if not 0.0 <= angle <= 4 * _RIGHT_ANGLE:
-        raise click.BadParameter(f"must be from 0deg to 360deg, got {text}")
-    return angle
-
-
-def sun_distance(text: str) -> float | str:
-    """Read a distance in au, ``mean`` or ``date``."""
-    if text in {"mean", "date"}:
-        return text
-    try:
-        distance = float(text.strip().casefold().removesuffix("au"))
-    except ValueError:
-        distance = math.nan
-    if not _NEAREST <= distance <= _FARTHEST:
-        raise click.BadParameter(
-            f"must be mean, date or a number of au from {_NEAREST:g} to {_FARTHEST:g}, got {text!r}"
-        )
-    return distance
-
-
-def moon(text: str) -> Moon:
-    """Read ``195deg,40deg``, with a diameter as ``0.52deg`` and a distance as ``384400km``."""
-    from skybake.ephemeris.moon import Moon
-
-    parts = text.split(",")
-    if not 2 <= len(parts) <= 4:
-        raise click.BadParameter(
-            f"must be AZIMUTH,ELEVATION[,DIAMETER[,DISTANCE]] such as 180deg,40deg, got {text!r}"
-        )
-    others = {}
-    if len(parts) > 2:
-        others["diameter"] = _parse(parts[2], parse_angle)
-    if len(parts) > 3:
-        is_far = parts[3].strip() == "inf"
-        others["distance"] = math.inf if is_far else length(parts[3])
-    try:
-        return Moon(bearing(parts[0]), elevation(parts[1]), **others)
-    except InputError as error:
-        raise click.BadParameter(str(error)) from error
-
-
-def day(text: str) -> date | str:
-    """Read a date such as ``2026-06-21``, or a key of `DAYS_FROM_TODAY`."""
-    if text.lower() in DAYS_FROM_TODAY:
-        return text.lower()
-    if re.fullmatch(r"\d{4}-\d\d-\d\d", text, re.ASCII):
-        with suppress(ValueError):
-            return date.fromisoformat(text)
-    raise click.BadParameter(f"must be a date such as 2026-06-21, or today, got {text!r}")
-
-
 def length(text: str) -> float:
     """Read a length. [km]"""
-    return _parse(text, parse_length)
+    return parsed(text, parse_length)
 
 
 def altitude(text: str) -> float:
@@ -183,7 +82,7 @@ def size(text: str) -> tuple[int, ...]:
 
 def field_of_view(text: str) -> float:
     """Read an angle greater than 0. [rad]"""
-    angle = _parse(text, parse_angle)
+    angle = parsed(text, parse_angle)
     if not angle > 0.0:
         raise click.BadParameter(f"must be greater than 0deg, got {text}")
     return angle
@@ -191,7 +90,7 @@ def field_of_view(text: str) -> float:
 
 def disc_diameter(text: str) -> float:
     """Read an angle greater than 0deg, at most 20deg. [rad]"""
-    angle = _parse(text, parse_angle)
+    angle = parsed(text, parse_angle)
     if not 0.0 < angle <= _LARGEST_DISC:
         raise click.BadParameter(f"must be greater than 0deg and at most 20deg, got {text}")
     return angle
@@ -327,7 +226,7 @@ def frames(text: str) -> tuple[int, ...]:
 
 def duration(text: str) -> float:
     """Read a duration such as ``10min``, greater than 0. [s]"""
-    seconds = _parse(text, parse_duration)
+    seconds = parsed(text, parse_duration)
     if not seconds > 0.0:
         raise click.BadParameter(f"must be greater than 0s, got {text}")
     return seconds
@@ -335,7 +234,7 @@ def duration(text: str) -> float:
 
 def duration_from_zero(text: str) -> float:
     """Read a duration such as ``2min``, or ``0s``. [s]"""
-    return _parse(text, parse_duration)
+    return parsed(text, parse_duration)
 
 
 def folder(text: str) -> Path:
@@ -368,18 +267,8 @@ def with_suffix(
     return check
 
 
-def _hemisphere(text: str, positive: str, negative: str) -> float:
-    """Read an angle that may end in the letter of a hemisphere instead of having a sign. [rad]"""
-    letter = text.strip()[-1:].upper()
-    if letter not in (positive, negative):
-        return _parse(text, parse_angle)
-    angle = _parse(text.strip()[:-1], parse_angle)
-    if text.strip()[0] in "+-":
-        raise click.BadParameter(f"must have a sign or {letter}, not both, got {text}")
-    return angle if letter == positive else -angle
-
-
-def _parse(text: str, parse: Callable[[str], float]) -> float:
+def parsed(text: str, parse: Callable[[str], float]) -> float:
+    """Read a quantity by a function that raises an `InputError`."""
     try:
         return parse(text)
     except InputError as error:
