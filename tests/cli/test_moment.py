@@ -42,7 +42,8 @@ def direction(elevation, azimuth):
 
 
 def test_the_sun_stands_where_it_does_at_that_time_and_place():
-    told, attributes, _ = render(*PARIS, "--time", "2026-06-21T10:00+02:00")
+    # What the night has decides pixels as well, and tells of the time.
+    told, attributes, _ = render(*PARIS, "--time", "2026-06-21T10:00+02:00", "--night", "off")
     place = Place(math.radians(48.8566), math.radians(2.3522))
     sun = sun_position(datetime(2026, 6, 21, 8, tzinfo=UTC), place)
     assert told["sun_direction"] == pytest.approx(direction(*sun), abs=1e-12)
