@@ -167,6 +167,10 @@ def bake_aerial(
     column, row, full_width, full_height = part.window
     lens = lens_of(camera, (full_width, full_height), (column, row))
     air: Air = (air_by_froxels if method == "froxel" else air_before)(scene, lens, source.depths)
+    if scene.cloudscape is not None:
+        from skybake.aerial.clouded import with_clouds
+
+        air = with_clouds(scene, scene.cloudscape, lens, source.depths, air)
     is_far = np.isinf(source.depths.values)
     seen = Behind(scene, camera, part.size, part.window)
     sky = behind = None

@@ -55,6 +55,28 @@ class AirTable(NamedTuple):
     total: Array
 
 
+class AirRays(NamedTuple):
+    """Rays along which the light of the air is looked up, see `fill_lit`.
+
+    Attributes
+    ----------
+    table : AirTable
+        Clear air.
+    row, weight : ndarray, shape (ray, 4)
+        Rows of the table between which a ray is.
+    directions : ndarray of float64, shape (ray, 3)
+        Of the rays.
+    visible : ndarray of float32, shape (ray, stretch + 1)
+        Share of the sun along them.
+    """
+
+    table: AirTable
+    row: npt.NDArray[np.int64]
+    weight: Array
+    directions: Array
+    visible: npt.NDArray[np.float32]
+
+
 def shadowed_stretch(
     altitude: float, directions: Array, radius: float, top: float
 ) -> tuple[Array, Array, npt.NDArray[np.bool_]]:

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from skybake.cloud_fields.field import SURFACE
 from skybake.clouds.air import GROUNDED, ClearAir
 from skybake.clouds.airlight import (
+    AirRays,
     AirTable,
     build_table,
     shadowed_stretch,
@@ -173,12 +174,10 @@ class Cloudscape:
             dim_rays(layer.field, solved, self.eye, directions, distance, out, self.workers)
         return out
 
-    def lit(
-        self, table: AirTable, row: np.ndarray, weight: Array, directions: Array, visible: Floats
-    ) -> tuple[Floats, Floats]:
-        """Light of the air with clouds around, see `fill_lit`."""
-        given = table, row, weight, self.dimming
-        return light_rays(*given, self.eye, directions, visible, self.workers)
+    def lit(self, rays: AirRays, dimming: Dimming) -> tuple[Floats, Floats]:
+        """Light of the air along rays with clouds around, see `fill_lit`."""
+        given = rays.table, rays.row, rays.weight, dimming, self.eye
+        return light_rays(*given, rays.directions, rays.visible, self.workers)
 
     def see(self, directions: Array, pixel: float) -> tuple[Floats, Floats]:
         """Follow rays through every layer, see `fill_march`.
@@ -212,32 +211,34 @@ class Cloudscape:
     @cached_property
     def nodes(self) -> tuple[Floats, Floats, Array]:
         """Light of the air in all directions: `lit`, `through` and distances at nodes."""
+        rays, distance = self.node_rays
+        return *self.lit(rays, self.dimming), distance
+
+    @cached_property
+    def node_rays(self) -> tuple[AirRays, Array]:
+        """Rays of the nodes, and the distances along them."""
         sun_azimuth = math.atan2(self.sun[0], self.sun[1])
-        zenith, azimuth = node_directions(
-            self.first, self.horizon, TABLE_ROWS, TABLE_COLUMNS, is_half=True
-        )
+        given = self.first, self.horizon, TABLE_ROWS, TABLE_COLUMNS
+        zenith, azimuth = node_directions(*given, is_half=True)
         table = self.table(unit_vectors(zenith, azimuth + sun_azimuth))
         zenith, azimuth = node_directions(
             self.first, self.horizon, NODE_ROWS, NODE_COLUMNS, is_half=False
         )
         directions = unit_vectors(zenith, azimuth)
         row, weight = np.empty((zenith.size, 4), np.int64), np.empty((zenith.size, 4))
-        fill_places(
-            zenith,
-            azimuth - sun_azimuth,
-            self.first,
-            self.horizon,
-            TABLE_ROWS,
-            TABLE_COLUMNS,
-            True,
-            row,
-            weight,
-        )
+        fill_places(zenith, azimuth - sun_azimuth, *given, True, row, weight)
         begin, end, _ = shadowed_stretch(self.altitude, directions, self.air.radius, self.top)
         distance = stretch_ends(begin, end)
         visible = self.visible(directions, distance)
-        lit, through = self.lit(table, row, weight, directions, visible)
-        return lit, through, distance
+        return AirRays(table, row, weight, directions, visible), distance
+
+    def find_places(
+        self, zenith: Array, bearing: Array, row: npt.NDArray[np.int64], weight: Array
+    ) -> None:
+        """Write the nodes between which rays are, and their weights, both (ray, 4)."""
+        angles = [flatten(np.require(each, float, ["C", "A", "W"])) for each in (zenith, bearing)]
+        given = self.first, self.horizon, NODE_ROWS, NODE_COLUMNS
+        fill_places(*angles, *given, False, row, weight)
 
     @property
     def horizon(self) -> float:
@@ -283,9 +284,8 @@ class Cloudscape:
         row, weight = np.empty((zenith.size, 4), np.int64), np.empty((zenith.size, 4))
         out = np.empty_like(total)
         opacity = np.empty(zenith.size, np.float32)
+        self.find_places(zenith, bearing, row, weight)
         flat = [flatten(each) for each in (total, row, weight, distance, lit, through, seen)]
-        angles = [flatten(np.require(each, float, ["C", "A", "W"])) for each in (zenith, bearing)]
-        fill_places(*angles, self.first, self.horizon, NODE_ROWS, NODE_COLUMNS, False, *flat[1:3])
 
         def work(first: int, last: int) -> None:
             compose(*flat, passing, first, last, out, opacity)
@@ -318,7 +318,8 @@ class Cloudscape:
         weight = np.zeros((count, 4))
         weight[:, 0] = 1.0
         visible = self.visible(directions, table.distance)
-        lit, through = self.lit(table, row, weight, directions, visible)
+        rays = AirRays(table, row, weight, directions, visible)
+        lit, through = self.lit(rays, self.dimming)
         seen, passing = self.see(directions, 0.0)
         out = np.empty((count, self.weights.shape[1]), np.float32)
         compose(

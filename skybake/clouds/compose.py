@@ -56,12 +56,12 @@ def compose(total, row, weight, distance, lit, through, seen, passing, first, la
                 share = (nearest - begin) / max(end - begin, 1e-9)
                 place = min(max(share, 0.0), 1.0) ** (1.0 / CROWDING) * stretches
             for c in range(channels):
-                gained = _at(lit, row[n], weight[n], place, c)
+                gained = at_place(lit, row[n], weight[n], place, c)
                 if place_before >= 0.0:
-                    gained -= _at(lit, row[n], weight[n], place_before, c)
+                    gained -= at_place(lit, row[n], weight[n], place_before, c)
                 out[n, c] += passes * max(total[n, c], TINY) * gained
                 if layer >= 0:
-                    air = _at(through, row[n], weight[n], place, c)
+                    air = at_place(through, row[n], weight[n], place, c)
                     out[n, c] += passes * air * seen[layer, n, c]
             if layer < 0:
                 break
@@ -71,7 +71,7 @@ def compose(total, row, weight, distance, lit, through, seen, passing, first, la
 
 
 @kernel
-def _at(values, row, weight, place, channel):
+def at_place(values, row, weight, place, channel):
     """Interpolate between nodes, and along their stretches."""
     q = min(int(place), values.shape[1] - 2)
     u = place - q

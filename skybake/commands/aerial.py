@@ -201,8 +201,6 @@ def aerial(**options: Any) -> None:
         raise click.UsageError(f"--{error}") from error
     distance = sun_distance(planet, moment, options["sun_distance"])
     settings = replace(settings, lighting=replace(settings.lighting, sun_distance=distance))
-    if planet.clouds:
-        warn("clouds are in the sky alone: air before things is clear, without their shadows")
     scene = Scene(planet, settings)
     if not options["quiet"] and not scene.sky.is_solved:
         notice("solving for the light in this atmosphere, once")
