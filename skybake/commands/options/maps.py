@@ -316,4 +316,7 @@ def map_settings(options: Mapping[str, Any], **others: Any) -> MapSettings:
 def given_settings(options: Mapping[str, Any]) -> dict[str, Any]:
     """Return the settings of light and storage that options give, by name."""
     given = {name: options.get(name) for name in _ENCODINGS}
-    return {name: value for name, value in given.items() if value not in (None, False)}
+    # Not by equality: 0 is an exposure value.
+    return {
+        name: value for name, value in given.items() if value is not None and value is not False
+    }
