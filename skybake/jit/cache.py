@@ -32,7 +32,8 @@ CLOUDS_PREFIX = "clouds-"
 
 KERNEL_SOURCES = (
     "jit", "optics", "transport", "cloud_fields", "scattering", "reference", "sky", "clouds",
-    "environment", "ibl", "formats/half.py",
+    "eclipse", "environment", "ibl", "luts", "aerial", "formats/half.py", "image/eclipsed.py",
+    "night/dome_pixels.py",
 )  # fmt: skip
 """Packages and modules that hold kernels, or what kernels are made from."""
 

@@ -81,6 +81,10 @@ class Shutter:
     def __init__(self, azimuth):
         self.azimuth = azimuth
 
+    @property
+    def uncovered(self):
+        return np.full(SUN.irradiance.shape, 0.5)
+
     def visible_share(self, azimuth, zenith):
         assert azimuth.shape == zenith.shape
         return np.where(azimuth < self.azimuth, 1.0, 0.0)
