@@ -62,33 +62,41 @@ def _visible(field, light, leaving, radius, altitude, direction, distance, sun):
     mu_s = (sun[0] * px + sun[1] * py + sun[2] * above) / r
     base = light.base
     top = base + light.beam.shape[1] * light.spacing[0]
-    is_behind = h < base if mu_s > 0.0 else h > top
-    if not is_behind and not base <= h <= top:
+    if h > top and mu_s > 0.0:
         return 1.0
-    x, y = tile_place(field, radius, px, py, above - radius)
-    place = sun_share(light, mu_s)
-    which = int(place)
-    share = place - which
-    if not is_behind:
-        k = min(int((h - base) / light.spacing[0]), light.beam.shape[1] - 1)
-        j = math.floor(y / light.spacing[1]) % leaving.shape[1]
-        i = math.floor(x / light.spacing[2]) % leaving.shape[2]
-        beam = float(light.beam[which, k, j, i])
-        if share > 0.0:
-            beam += share * (light.beam[which + 1, k, j, i] - beam)
-        return beam
-    face = base if mu_s > 0.0 else top
+    if base <= h <= top:
+        x, y = tile_place(field, radius, px, py, above - radius)
+        return _beam_at(light, sun_share(light, mu_s), x, y, h)
+    # Where the beam left the layer: for places below it up the way to the sun, even to one below
+    # the horizontal, whose light comes by the planet's edge; for those above it down the way.
+    face = base if h < base else top
     chord = r * r * mu_s * mu_s + (face - h) * (2.0 * radius + face + h)
     if chord < 0.0:
         return 1.0
-    # Where the beam left the layer: up the way to a sun above, or down to one below.
-    to_face = math.sqrt(chord) - r * mu_s if mu_s > 0.0 else -r * mu_s - math.sqrt(chord)
+    to_face = (math.sqrt(chord) if h < base else -math.sqrt(chord)) - r * mu_s
+    place = sun_share(light, (r * mu_s + to_face) / (radius + face))
+    which = int(place)
+    share = place - which
     px, py, above = px + to_face * sun[0], py + to_face * sun[1], above + to_face * sun[2]
     x, y = tile_place(field, radius, px, py, above - radius)
     value = _between(leaving[which], light, x, y)
     if share > 0.0:
         value += share * (_between(leaving[which + 1], light, x, y) - value)
     return value
+
+
+@kernel
+def _beam_at(light, place, x, y, h):
+    """Share of the sun's beam in the voxel at a point, between suns."""
+    which = int(place)
+    share = place - which
+    _, levels, rows, columns = light.beam.shape
+    k = min(int((h - light.base) / light.spacing[0]), levels - 1)
+    j, i = math.floor(y / light.spacing[1]) % rows, math.floor(x / light.spacing[2]) % columns
+    beam = float(light.beam[which, k, j, i])
+    if share > 0.0:
+        beam += share * (light.beam[which + 1, k, j, i] - beam)
+    return beam
 
 
 @kernel
