@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import numpy.typing as npt
 
-from skybake.clouds.airlight import CROWDING
 from skybake.clouds.cloudscape import Cloudscape
-from skybake.clouds.compose import at_place
+from skybake.clouds.compose import at_place, next_layer, place_along
 from skybake.clouds.dimming import Dimming
 from skybake.clouds.directions import unit_vectors
 from skybake.jit.arguments import flatten
@@ -18,7 +15,7 @@ from skybake.optics.medium import Array
 
 Floats = npt.NDArray[np.float32]
 
-ROWS_AT_ONCE = 4096
+RAYS_AT_ONCE = 4096
 """Rays that a thread takes at a time."""
 
 
@@ -86,7 +83,7 @@ class CloudsBefore:
         def work(first: int, last: int) -> None:
             fill_before(*flat, first, last, light, passes)
 
-        clouds.workers.run_rows(count, work, chunk=ROWS_AT_ONCE)
+        clouds.workers.run_rows(count, work, chunk=RAYS_AT_ONCE)
         return light, passes
 
 
@@ -139,17 +136,13 @@ def fill_before(
         for p in range(4):
             begin += weight[n, p] * distance[row[n, p], 0]
             end += weight[n, p] * distance[row[n, p], stretches]
-        goal = _place(ends[n], begin, end, stretches)
+        goal = place_along(ends[n], begin, end, stretches)
         for c in range(channels):
             light[n, c] = 0.0
         passed, done, before = 1.0, -1.0, -1.0
         for _ in range(layers + 1):
-            nearest, layer = math.inf, -1
-            for k in range(layers):
-                d = passing[k, n, 2] + 1e-9 * k
-                if passing[k, n, 0] < 1.0 and done < d < nearest and d < ends[n]:
-                    nearest, layer = d, k
-            place = goal if layer < 0 else min(_place(nearest, begin, end, stretches), goal)
+            nearest, layer = next_layer(passing[:, n], done, ends[n])
+            place = goal if layer < 0 else place_along(nearest, begin, end, stretches)
             for c in range(channels):
                 gained = at_place(lit, row[n], weight[n], place, c)
                 if before >= 0.0:
@@ -176,10 +169,3 @@ def _until(air, total, clear, row, weight, goal, stretches, channel):
     if goal < stretches:
         return air
     return min(air, total * at_place(clear, row, weight, float(stretches), channel))
-
-
-@kernel
-def _place(distance, begin, end, stretches):
-    """Where a distance is among those of a ray's stretches."""
-    share = (distance - begin) / max(end - begin, 1e-9)
-    return min(max(share, 0.0), 1.0) ** (1.0 / CROWDING) * stretches

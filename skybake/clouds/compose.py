@@ -45,16 +45,10 @@ def compose(total, row, weight, distance, lit, through, seen, passing, first, la
         passes, done = 1.0, -1.0
         place_before = -1.0
         for _ in range(layers + 1):
-            nearest, layer = math.inf, -1
-            for k in range(layers):
-                d = passing[k, n, 2]
-                # Layers at one distance are taken one after the other.
-                if passing[k, n, 0] < 1.0 and (d + 1e-9 * k) > done and d + 1e-9 * k < nearest:
-                    nearest, layer = d + 1e-9 * k, k
+            nearest, layer = next_layer(passing[:, n], done, math.inf)
             place = stretches + 1.0
             if layer >= 0:
-                share = (nearest - begin) / max(end - begin, 1e-9)
-                place = min(max(share, 0.0), 1.0) ** (1.0 / CROWDING) * stretches
+                place = place_along(nearest, begin, end, stretches)
             for c in range(channels):
                 gained = at_place(lit, row[n], weight[n], place, c)
                 if place_before >= 0.0:
@@ -68,6 +62,27 @@ def compose(total, row, weight, distance, lit, through, seen, passing, first, la
             passes *= passing[layer, n, 0]
             done, place_before = nearest, place
         opacity[n] = 1.0 - passes
+
+
+@kernel
+def next_layer(passing, done, limit):
+    """Distance and number of the layer that is seen next behind a distance; inf and -1 for none.
+
+    Layers at one distance are taken one after the other.
+    """
+    nearest, layer = math.inf, -1
+    for k in range(passing.shape[0]):
+        d = passing[k, 2] + 1e-9 * k
+        if passing[k, 0] < 1.0 and done < d < min(nearest, limit):
+            nearest, layer = d, k
+    return nearest, layer
+
+
+@kernel
+def place_along(distance, begin, end, stretches):
+    """Where a distance is among those of a ray's stretches, from 0 to their number."""
+    share = (distance - begin) / max(end - begin, 1e-9)
+    return min(max(share, 0.0), 1.0) ** (1.0 / CROWDING) * stretches
 
 
 @kernel
