@@ -10,13 +10,16 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
+from skybake.ephemeris.celestial import J2000
 from skybake.errors import InputError
 from skybake.formats.cube_file import is_cube_file
+from skybake.image.night import Night
 from skybake.image.settings import Clouds, Encoding, Lighting, MapSettings
 from skybake.preset import Planet
 from skybake.projection import Cubemap, Projection
 
-PLAIN_LIGHTING, PLAIN_ENCODING, PLAIN_CLOUDS = Lighting(), Encoding(), Clouds()
+PLAIN_LIGHTING, PLAIN_ENCODING = Lighting(), Encoding()
+PLAIN_CLOUDS, PLAIN_NIGHT = Clouds(), Night()
 
 LONGEST_VALUE = 12
 LONGEST_CHANGES = 40
@@ -45,6 +48,8 @@ def default_path(planet: Planet, settings: MapSettings) -> Path:
         f"{view.altitude * 1e3:g}m" if view.altitude > 0.0 else "",
         lighting.method if lighting.method != PLAIN_LIGHTING.method else "",
         _DISCS[lighting.sun_disc],
+        "moon" if lighting.moon is not None else "",
+        *_night(settings.night),
         "" if lighting.sun_size is None else f"size{math.degrees(lighting.sun_size):g}deg",
         "soft" if lighting.sun_soft else "",
         f"strength{lighting.sun_strength:g}" if lighting.sun_strength != 1.0 else "",
@@ -57,6 +62,26 @@ def default_path(planet: Planet, settings: MapSettings) -> Path:
         view.projection.label,
     )
     return Path("_".join(filter(None, parts)) + usual_suffix(settings))
+
+
+def _night(night: Night) -> tuple[str, ...]:
+    """Name what a map has of the night, unless it is as usual."""
+    if night.frame is None:
+        return ()
+    if not night.is_shown:
+        return ("nonight",)
+    stars = {"include": "", "exclude": "nostars", "only": "stars"}[night.stars]
+    if night.faintest_star != PLAIN_NIGHT.faintest_star:
+        stars = f"stars{night.faintest_star:g}"
+    scales = (
+        f"{name}{value:g}"
+        for name, value in (("airglow", night.airglow), ("zodiacal", night.zodiacal))
+        if value != 1.0
+    )
+    # By hand, of no time that would move the sun.
+    by_hand = night.frame.year == J2000
+    stands = f"lst{math.degrees(night.frame.sidereal_time):.2f}deg" if by_hand else ""
+    return (stands, stars, *scales)
 
 
 def usual_suffix(settings: MapSettings) -> str:

@@ -13,6 +13,9 @@ import numpy as np
 from skybake.baking.late_kernels import compiled_in_background
 from skybake.baking.write import bake
 from skybake.cloud_fields.build import build_field
+from skybake.ephemeris.celestial import CelestialFrame
+from skybake.ephemeris.moon import Moon
+from skybake.image.night import Night
 from skybake.image.settings import Clouds, Lighting, MapSettings, View
 from skybake.optics.medium import build_medium
 from skybake.optics.phase import build_phase
@@ -26,6 +29,7 @@ from skybake.sky.sky import METHODS, WAVELENGTHS, Sky
 
 SMALL = MapSettings(View(projection=Equirect(16)))
 ORBIT = 400.0
+NIGHT = math.radians(-40.0)
 
 CLOUDY = "earth-fair", "earth-broken", "earth-cirrus"
 """Presets whose clouds need all kernels that draw some: heaps, decks and trails."""
@@ -99,6 +103,8 @@ def _kinds() -> list[MapSettings]:
     return [
         *(replace(SMALL, lighting=Lighting(method=method)) for method in METHODS),
         replace(SMALL, lighting=Lighting(math.radians(-4.0))),
+        replace(SMALL, lighting=Lighting(NIGHT), night=Night(CelestialFrame("earth", 0.0, 0.0))),
+        replace(SMALL, lighting=Lighting(moon=Moon(Lighting.sun_azimuth, Lighting.sun_elevation))),
         MapSettings(View(ORBIT, Equirect(16))),
         MapSettings(View(ORBIT, cubes[0])),
         *(MapSettings(View(projection=projection)) for projection in projections),

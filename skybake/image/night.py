@@ -100,12 +100,12 @@ class Night:
 def night_of(night: Night, frame: CelestialFrame, planet: str | None) -> Night:
     """Return the night of a world by how the stars stand.
 
-    Airglow is Earth's, and zodiacal light is known between the sun and Mars alone.
+    Airglow is Earth's, which has none over Mars, and zodiacal light is known up to Mars alone.
     """
     return replace(
         night,
         frame=frame,
-        airglow=night.airglow if planet == "earth" else 0.0,
+        airglow=night.airglow if planet in {"earth", "mars"} else 0.0,
         zodiacal=night.zodiacal if planet in {"earth", "mars"} else 0.0,
     )
 

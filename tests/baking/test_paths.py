@@ -7,6 +7,9 @@ import re
 import pytest
 
 from skybake.baking import default_path
+from skybake.ephemeris.celestial import CelestialFrame
+from skybake.ephemeris.moon import Moon
+from skybake.image.night import Night
 from skybake.image.settings import map_settings
 from skybake.preset import load_preset
 
@@ -69,6 +72,24 @@ def test_what_changes_the_light_shows_in_the_name():
     )
     assert name(rows="poles") == "mars_sun30.00deg_equirect_poles.exr"
     assert name(projection="cubemap", layout="cross") == ("mars_sun30.00deg_cubemap_cross.exr")
+
+
+def test_what_a_map_has_of_the_night_shows_in_the_name():
+    by_hand, at_a_time = (
+        CelestialFrame("mars", 75.0 * DEGREE, 0.5, year) for year in (2000.0, 2026.4)
+    )
+    assert name(night=Night(at_a_time)) == "mars_sun30.00deg_equirect.exr"
+    assert name(night=Night(by_hand)) == "mars_sun30.00deg_lst75.00deg_equirect.exr"
+    named = {
+        "nonight": Night(at_a_time, is_shown=False),
+        "nostars": Night(at_a_time, stars="exclude"),
+        "stars": Night(at_a_time, stars="only"),
+        "stars4_zodiacal0.5": Night(at_a_time, faintest_star=4.0, zodiacal=0.5),
+    }
+    for part, night in named.items():
+        assert name(night=night) == f"mars_sun30.00deg_{part}_equirect.exr"
+    moon = Moon(math.pi, 0.5)
+    assert name(moon=moon) == "mars_sun30.00deg_moon_equirect.exr"
 
 
 @pytest.mark.parametrize(

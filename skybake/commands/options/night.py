@@ -15,15 +15,6 @@ if TYPE_CHECKING:
     from skybake.ephemeris.moment import Moment
     from skybake.image.night import Night
 
-stars_option = click.option(
-    "--stars",
-    metavar="include|exclude|only|MAGNITUDE",
-    type=celestial.stars,
-    show_default="include, with a time",
-    help="Whether the map holds the stars, or nothing else, or those up to a magnitude; where they "
-    "stand is known with a time, or with --lst.",
-)
-
 night_options = options_together(
     click.option(
         "--night",
@@ -32,7 +23,14 @@ night_options = options_together(
         help="Whether a map with a time has the lights of the night: stars, Milky Way, zodiacal "
         "light and, on Earth, airglow.",
     ),
-    stars_option,
+    click.option(
+        "--stars",
+        metavar="include|exclude|only|MAGNITUDE",
+        type=celestial.stars,
+        show_default="include, with a time",
+        help="Whether the map holds the stars, or nothing else, or those up to a magnitude; where "
+        "they stand is known with a time, or with --lst.",
+    ),
     click.option(
         "--airglow",
         metavar="SCALE",
@@ -61,7 +59,7 @@ lst_option = click.option(
 
 
 def night_needs(options: Mapping[str, Any], *, is_timed: bool, time: str) -> Needs:
-    """Return what the options of stars need: `time`, the option or options of a time."""
+    """Return what the options of the night need: `time`, the option or options of a time."""
     sidereal = options.get("sidereal_time")
     is_known = is_timed or sidereal is not None
     needs = f"needs {time}" + (" or --lst" if "sidereal_time" in options else "")
@@ -81,19 +79,19 @@ def night_needs(options: Mapping[str, Any], *, is_timed: bool, time: str) -> Nee
 
 
 def night_from_options(options: Mapping[str, Any], moment: Moment | None = None) -> Night:
-    """Return which stars a map shows.
+    """Return what of the night a map shows.
 
     Parameters
     ----------
     options : mapping
-        With the values of `stars_option`, and of ``--lst`` and ``--lat`` if there are any.
+        With the values of `night_options`, and of ``--lst`` and ``--lat`` if there are any.
     moment : Moment, optional
         When.
 
     Raises
     ------
     click.UsageError
-        If the magnitude is out of its range.
+        If a value is out of its range.
     PresetError
         If the preset cannot be read.
     """
