@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from skybake.colour.space import rgb_from_xyz
+from skybake.ephemeris.celestial import CelestialFrame
 from skybake.image.layers import Pixels
 from skybake.image.scene import Scene
 from skybake.jit.arguments import flatten
@@ -12,24 +13,14 @@ from skybake.night.dome import ABOVE, NightDome
 from skybake.night.dome_pixels import fill_dome
 from skybake.optics.medium import Array
 
-BRIGHTEST = 1.5e-3
-"""Of the sky between stars, away from the sun. [cd m⁻²]"""
-
-VISIBLE = 1e-3
-"""Share of the darkest light of the sky that it must be to be seen."""
-
 ROWS_AT_ONCE = 16
 
 
-def visible_glow(scene: Scene) -> NightGlow | None:
-    """Return the glow of a scene's night, or None where twilight outshines it."""
+def glow_over(scene: Scene, frame: CelestialFrame) -> NightGlow:
+    """Return the glow of a scene's night, whose stars stand in a frame."""
     night = scene.settings.night
-    darkest = float((scene.clear_survey @ scene.luminance).min())
-    factor = max(night.airglow, night.zodiacal, 1.0)
-    if night.frame is None or factor * BRIGHTEST < VISIBLE * darkest:
-        return None
-    airglow = night.airglow if night.frame.planet == "earth" else 0.0
-    dome = NightDome(scene.sky, night.frame, airglow=airglow, zodiacal=night.zodiacal)
+    airglow = night.airglow if frame.planet == "earth" else 0.0
+    dome = NightDome(scene.sky, frame, airglow=airglow, zodiacal=night.zodiacal)
     return NightGlow(scene, dome)
 
 

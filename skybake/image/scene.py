@@ -149,20 +149,30 @@ class Scene:
     @cached_property
     def stars(self) -> Stars | None:
         """The stars over the observer, or None where none are seen."""
-        if not self.settings.night.shows_stars:
+        night = self.settings.night
+        if night.frame is None or not night.shows_stars:
             return None
-        from skybake.image.starry import visible_stars
+        from skybake.image.outshone import stars_are_outshone
 
-        return visible_stars(self)
+        if night.stars == "include" and stars_are_outshone(self):
+            return None
+        from skybake.image.starry import stars_over
+
+        return stars_over(self, night.frame)
 
     @cached_property
     def night_glow(self) -> NightGlow | None:
         """The light of the sky between the stars, or None where none is seen."""
-        if not self.settings.night.shows_glow:
+        night = self.settings.night
+        if night.frame is None or not night.shows_glow:
             return None
-        from skybake.image.night_glow import visible_glow
+        from skybake.image.outshone import glow_is_outshone
 
-        return visible_glow(self)
+        if glow_is_outshone(self):
+            return None
+        from skybake.image.night_glow import glow_over
+
+        return glow_over(self, night.frame)
 
     def light_clouds(self) -> None:
         """Solve for the light of clouds, which takes longest, before pixels show them."""

@@ -9,44 +9,21 @@ import numpy as np
 from skybake.angles import zenith_azimuth
 from skybake.colour.observer import load_observer, xyz_weights
 from skybake.colour.space import find_colour_space, rgb_from_xyz
+from skybake.ephemeris.celestial import CelestialFrame
 from skybake.image.layers import Pixels
-from skybake.image.night import BRIGHTEST_STAR
 from skybake.image.scene import Scene
 from skybake.night.stars import Stars
 from skybake.optics.medium import Array
 from skybake.projection.chart import Chart
 from skybake.projection.points import spread_points
 
-VISIBLE = 0.02
-"""Share that the brightest star must add to the darkest pixel, or else all are left out."""
-
-_SIRIUS = 2.55e-6 * 10.0 ** (-0.4 * BRIGHTEST_STAR)
-"""Illuminance above the air. [lx]"""
-
-_PEAK = 0.75**2
-"""Of a star's light, what falls into the pixel in the middle of which it is."""
-
 _EVERYWHERE = np.array([300.0, 900.0])
 
 
-def visible_stars(scene: Scene) -> Stars | None:
-    """Return the stars of a scene, or None where its sky outshines them.
-
-    By day even Sirius adds less than `VISIBLE` to its pixel, unless pixels are very small.
-    """
+def stars_over(scene: Scene, frame: CelestialFrame) -> Stars:
+    """Return the stars of a scene that stand in a frame."""
     night = scene.settings.night
-    if night.frame is None or (night.stars == "include" and _outshone(scene)):
-        return None
-    return Stars(scene.sky, night.frame, night.faintest_star, is_refracted=night.is_refracted)
-
-
-def _outshone(scene: Scene) -> bool:
-    darkest = float((scene.clear_survey @ scene.luminance).min())
-    canvases = scene.settings.view.projection.canvases()
-    charts = [part.chart for canvas in canvases for part in canvas.parts]
-    smallest = min(float(chart.footprints(0, 1).min()) for chart in charts)
-    is_dim: bool = _SIRIUS * _PEAK / smallest**2 < VISIBLE * darkest
-    return is_dim
+    return Stars(scene.sky, frame, night.faintest_star, is_refracted=night.is_refracted)
 
 
 def star_xyz(scene: Scene, stars: Stars) -> Array:

@@ -16,7 +16,8 @@ import sys
 from click.testing import CliRunner
 from skybake.cli import main
 assert CliRunner().invoke(main, sys.argv[1:]).exit_code == 0
-print([name for name in sys.modules if name.startswith(("skybake.night", "skybake.image.starry"))])
+rooms = ("skybake.night", "skybake.image.starry", "skybake.image.night_glow")
+print([name for name in sys.modules if name.startswith(rooms)])
 """
 
 
@@ -88,7 +89,7 @@ def test_without_stars_nothing_of_them_is_imported(folder, arguments):
         "render", *SMALL, *arguments, "-q", "-o", "a.exr", code=STARRY, cwd=folder
     )
     assert (status, errors) == (0, "")
-    assert "skybake.night.stars" not in output or "10:00Z" in arguments[-1]
+    assert output == "[]\n"
 
 
 @pytest.mark.parametrize(
