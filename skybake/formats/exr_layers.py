@@ -15,12 +15,10 @@ from skybake.formats.compression import ZIP_LEVEL
 from skybake.formats.exr_chunks import find_fault
 from skybake.formats.long_texts import joined
 from skybake.formats.reader import open_image, reason
-from skybake.formats.spec import Attribute
+from skybake.formats.spec import HALF_MAX, Attribute
 from skybake.formats.targets import faults_of, write_error
 
 Plane = npt.NDArray[np.floating[Any]]
-
-LARGEST_HALF = 65504.0
 
 LARGEST_NUMBER = 1 << 22
 """Whole number that the library keeps beside channels of other types."""
@@ -205,8 +203,8 @@ def _fitting(part: ExrPart) -> tuple[Plane, int]:
         if kind != "half":
             continue
         plane = pixels[..., k]
-        beyond = np.isfinite(plane) & (np.abs(plane) > LARGEST_HALF)
+        beyond = np.isfinite(plane) & (np.abs(plane) > HALF_MAX)
         if beyond.any():
             clamped += int(beyond.sum())
-            plane[beyond] = np.copysign(LARGEST_HALF, plane[beyond])
+            plane[beyond] = np.copysign(HALF_MAX, plane[beyond])
     return np.ascontiguousarray(pixels), clamped
