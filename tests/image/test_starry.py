@@ -6,13 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from skybake.angles import direction_from_angles
 from skybake.ephemeris.celestial import CelestialFrame
+from skybake.ephemeris.horizon import Horizon
 from skybake.errors import InputError
 from skybake.image.image import image_of_scene
 from skybake.image.night import Night
 from skybake.image.scene import Scene
 from skybake.image.settings import map_settings
 from skybake.image.starry import star_illuminance, star_xyz
+from skybake.night.stars import _raised
 from skybake.preset import load_preset
 from skybake.projection import Equirect, Perspective
 
@@ -151,3 +154,12 @@ def test_a_glow_beyond_bounds_is_refused(name, scale):
 def test_a_magnitude_that_no_star_has_is_refused(magnitude):
     with pytest.raises(InputError, match=r"stars: magnitude must be from -1.44"):
         Night(faintest_star=magnitude)
+
+
+@pytest.mark.parametrize("altitude", [0.0, 2.6])
+def test_stars_are_raised_as_the_sun_is(altitude):
+    horizon = Horizon("earth", altitude)
+    elevation = np.radians([-0.4, 0.03, 1.0, 7.0, 30.0, 80.0]) - horizon.dip
+    raised = _raised(direction_from_angles(0.3, elevation), horizon)
+    expected = elevation + [horizon.lift(each) for each in elevation.tolist()]
+    np.testing.assert_allclose(np.arcsin(raised[:, 1]), expected, rtol=0.0, atol=2.5e-6)
