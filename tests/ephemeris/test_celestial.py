@@ -34,6 +34,7 @@ def by_erfa(time, place):
     return np.stack([level * np.sin(azimuth), np.cos(zenith), -level * np.cos(azimuth)], axis=-1)
 
 
+# ERFA warns of years in which it does not know the leap seconds.
 @pytest.mark.filterwarnings("ignore:ERFA function")
 @pytest.mark.parametrize("place", [PARIS, QUITO])
 @pytest.mark.parametrize("year", [1900, 1980, 2026, 2050])
