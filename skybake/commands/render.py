@@ -37,6 +37,7 @@ from skybake.commands.options.previews import (
     preview_options,
 )
 from skybake.commands.options.rules import check_needs, is_given
+from skybake.commands.options.sensor import sensor_from_options, sensor_needs, sensor_options
 from skybake.commands.options.times import moment_from_options, moment_needs, moment_options
 from skybake.commands.options.world import world_from_options, world_options
 from skybake.commands.printing import render_summary
@@ -56,6 +57,7 @@ from skybake.commands.printing.progress import map_progress
 @lst_option
 @clouds_options()
 @map_options
+@sensor_options
 @click.option(
     *("-o", "--output"),
     metavar="FILE",
@@ -104,6 +106,7 @@ def render(**options: Any) -> None:
         moon_needs(options, is_timed=is_timed, time="--time"),
         night_needs(options, is_timed=is_timed, time="--time"),
         map_needs(options),
+        sensor_needs(options),
         preview_needs(options),
     )
     leaves_disc_out = bool(options["lights"]) and not is_given(context, "sun_disc")
@@ -115,6 +118,7 @@ def render(**options: Any) -> None:
         options,
         **positions(options, moment),
         night=night_from_options(options, moment),
+        sensor=sensor_from_options(options),
     )
 
     from skybake.baking import bake, default_path, late_kernels

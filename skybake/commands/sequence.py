@@ -39,6 +39,7 @@ from skybake.commands.options.previews import (
 )
 from skybake.commands.options.products import product_options, products_from_options
 from skybake.commands.options.rules import Needs, check_needs, usage_faults
+from skybake.commands.options.sensor import sensor_from_options, sensor_needs, sensor_options
 from skybake.commands.options.times import span_from_options, span_needs, span_options
 from skybake.commands.options.world import changes_from_options, world_options
 from skybake.commands.printing import sequence_summary
@@ -77,6 +78,7 @@ SOME_FAILED = 3
     help="Bake only these of them, as one machine of a farm does.",
 )
 @map_options
+@sensor_options
 @click.option(
     "--exposure-curve",
     metavar="FILE.csv",
@@ -160,6 +162,7 @@ def sequence(**options: Any) -> None:
         moon_needs(options, is_timed=is_timed, time=times),
         night_needs(options, is_timed=is_timed, time=times),
         map_needs(options),
+        sensor_needs(options),
         preview_needs(options),
         emit_needs(options),
         _needs(options),
@@ -225,6 +228,7 @@ def _plan_from_options(context: click.Context) -> Plan:
         clouds_quality=options["clouds_quality"],
         moon=options["moon"],
         night=night_from_options(options),
+        sensor=sensor_from_options(options),
     )
     changes = changes_from_options(context)
 

@@ -50,6 +50,8 @@ class Scene:
         Threads that do the work.
     stages : Stages, optional
         What makes the table that pixels read, and may keep it.
+    sky : Sky, optional
+        What is seen, if it is known.
     """
 
     def __init__(
@@ -58,18 +60,20 @@ class Scene:
         settings: MapSettings,
         workers: Workers = ALL_CPUS,
         stages: Stages | None = None,
+        sky: Sky | None = None,
     ) -> None:
         self.planet = planet
         self.settings = settings
         self.workers = workers
-        self._stages = stages or Stages()
-        self.sky = Sky(
+        self.stages = stages or Stages()
+        self.sky = sky or Sky(
             planet,
             settings.lighting.sun_elevation,
             settings.view.altitude,
             sun_azimuth=settings.lighting.sun_azimuth,
             sun_distance=settings.lighting.sun_distance,
             moon=settings.lighting.moon,
+            wavelengths=settings.sensor.colour_wavelengths(),
             method=settings.lighting.method,
             workers=workers,
         )
@@ -204,7 +208,7 @@ class Scene:
     def _surveyed(self) -> Survey:
         return Survey(
             self.sky,
-            self._stages,
+            self.stages,
             rgb_weights=self.rgb_weights,
             xyz_weights=self.xyz_weights,
             luminance=self.luminance,
