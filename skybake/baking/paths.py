@@ -93,6 +93,8 @@ def _sensor(sensor: Sensor) -> tuple[str, ...]:
         "" if camera is None else f"camera-{Path(camera.name).stem}",
         "unbalanced" if camera is not None and camera.white == "none" else "",
         "" if sensor.wavelengths is None else "spectral",
+        "stokes" if sensor.stokes else "",
+        "" if sensor.polarizer is None else f"polarizer{math.degrees(sensor.polarizer):g}deg",
     )
 
 

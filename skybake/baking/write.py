@@ -188,7 +188,7 @@ def bake_scene(
     planet, settings = scene.planet, scene.settings
     paths = map_paths(output, settings)
     begin = stage or _ignore
-    bands = _bands(scene)
+    bands = _bands(scene, None if preview is None else picture)
     _ = scene.sun  # which can be refused, before what takes long
     if planet.clouds:
         begin("clouds")
@@ -211,7 +211,7 @@ def bake_scene(
     shows, rasters = _rasters(scene, bands, canvases)
     peak = max(raster.peak for raster in rasters)
     largest, smallest = bands.value_range(peak) if bands else value_range(scene, peak)
-    warnings = scene_warnings(scene, peak)
+    warnings = scene_warnings(scene, peak) + (bands.warnings() if bands else [])
     stored = fitting_pixel(encoding.pixel, largest, smallest) if pixel is None else pixel
 
     spec = partial(_spec, settings=settings, stored=stored, attributes=attributes, bands=bands)
@@ -262,8 +262,18 @@ def bake_scene(
     )
 
 
-def _bands(scene: Scene) -> Bands | None:
-    """Return what the map holds besides what an eye sees, or instead; None if nothing."""
+def _bands(scene: Scene, picture: PictureSettings | None) -> Bands | None:
+    """Return what the map holds besides what an eye sees, or instead; None if nothing.
+
+    Raises
+    ------
+    InputError
+        If the map, or its picture, needs what the world has not.
+    """
+    if picture is not None and picture.show != "light":
+        from skybake.image.polarised import check_polarisation
+
+        check_polarisation(scene.planet, scene.settings, "show")
     if scene.settings.sensor.is_eye:
         return None
     from skybake.baking.bands import bands_of
@@ -300,7 +310,7 @@ def _spec(
         states_exposure=not encoding.omit_exposure,
         attributes=attributes,
     )
-    return spec if bands is None else bands.spec(spec, settings.sensor)
+    return spec if bands is None else bands.spec(spec)
 
 
 def _from_below(scene: Scene) -> tuple[float, float] | None:

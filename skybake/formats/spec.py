@@ -17,6 +17,9 @@ HALF_MAX = 65504.0
 CAMERA = "skybake:camera"
 """Attribute of a map in the channels of a camera, which are in no space of an eye."""
 
+POLARIZER = "skybake:polarizer"
+"""Attribute of a map through a polarising filter: angle of its axis from the vertical. [deg]"""
+
 PIXELS = ("half", "float", "rgb9e5", "r11g11b10")
 """Types of stored values."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,6 +21,9 @@ from skybake.sky.drawn_disc import DrawnDisc
 from skybake.sky.sky import Sky
 from skybake.sky.spectral_table import SpectralTable
 
+if TYPE_CHECKING:
+    from skybake.sky.stokes_table import StokesTable
+
 CHANNELS = 3
 
 
@@ -32,6 +36,8 @@ def check_sensor(planet: Planet, settings: MapSettings) -> None:
         Of a world of three wavelengths, clouds, or lights of the night.
     """
     sensor = settings.sensor
+    if sensor.wavelengths is None and sensor.response is None:
+        return
     what = "camera" if sensor.wavelengths is None else "spectral"
     if planet.rendering != "spectral":
         raise InputError(f"{what}: needs a preset of rendering spectral, got {planet.rendering}")
@@ -171,6 +177,7 @@ class _SharedTables(Stages):
     def __init__(self, stages: Stages) -> None:
         self._stages = stages
         self._tables: dict[tuple[int, bool], SpectralTable] = {}
+        self._stokes: dict[int, StokesTable] = {}
 
     def spectral_table(self, sky: Sky, *, finely: bool = False) -> SpectralTable:
         """Light around the observer in all wavelengths."""
@@ -178,3 +185,9 @@ class _SharedTables(Stages):
         if key not in self._tables:
             self._tables[key] = self._stages.spectral_table(sky, finely=finely)
         return self._tables[key]
+
+    def stokes_table(self, sky: Sky) -> StokesTable:
+        """Linear polarisation around the observer in all wavelengths."""
+        if id(sky) not in self._stokes:
+            self._stokes[id(sky)] = super().stokes_table(sky)
+        return self._stokes[id(sky)]

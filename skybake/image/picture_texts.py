@@ -24,6 +24,7 @@ def preview_texts(
         "skybake:view": picture.view,
         "skybake:whiteBalance": white_balance_text(white_balance_of(picture, planet)),
         "skybake:shot": "none" if picture.shot is None else shot_text(picture.shot),
+        **({} if picture.show == "light" else {"skybake:show": picture.show}),
     }
 
 

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from skybake.image.eclipsed import LeftShare
     from skybake.image.night_glow import NightGlow
     from skybake.night.stars import Stars
+    from skybake.sky.stokes_table import FoldedStokes
 
 CELLS_AT_ONCE = 32768
 
@@ -177,6 +178,13 @@ class Scene:
         from skybake.image.night_glow import glow_over
 
         return glow_over(self, night.frame)
+
+    @cached_property
+    def stokes(self) -> FoldedStokes:
+        """Linear polarisation of the sky, as tables of pixel values."""
+        from skybake.sky.stokes_table import fold_stokes
+
+        return fold_stokes(self.stages.stokes_table(self.sky), self.rgb_weights)
 
     def light_clouds(self) -> None:
         """Solve for the light of clouds, which takes longest, before pixels show them."""

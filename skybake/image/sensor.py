@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -11,6 +12,7 @@ import numpy as np
 from skybake.colour.camera import CameraResponse
 from skybake.errors import InputError
 from skybake.optics.medium import Array
+from skybake.units import degrees
 
 DEFAULT_WAVELENGTHS = tuple(float(each) for each in range(400, 701, 10))
 """Wavelengths of a spectral map. [nm]"""
@@ -37,25 +39,44 @@ class Sensor:
         `skybake.formats.spectral_exr`. [nm]
     response : CameraResponse or None
         Camera whose channels R, G and B are instead of an eye's.
+    stokes : bool
+        Hold the Stokes components S0 to S3 of all channels.
+    polarizer : float or None
+        Of a linear polarising filter before the map: angle of its axis from the vertical,
+        counter-clockwise as seen along the view. [rad]
 
     Raises
     ------
     InputError
-        If wavelengths are none, too many, too close, or not ascending.
+        If wavelengths are none, too many, too close, or not ascending, or if a filter is combined
+        with Stokes components, of which it leaves none.
     """
 
     wavelengths: tuple[float, ...] | None = None
     response: CameraResponse | None = None
+    stokes: bool = False
+    polarizer: float | None = None
 
     def __post_init__(self) -> None:
-        """Refuse wavelengths that no file can hold."""
+        """Refuse what no file can hold."""
         if self.wavelengths is not None:
             _check_wavelengths(self.wavelengths)
+        if self.polarizer is None:
+            return
+        if not math.isfinite(self.polarizer):
+            raise InputError(f"polarizer: must be finite, got {self.polarizer}")
+        if self.stokes:
+            raise InputError("polarizer: must be without stokes, since it passes one component")
 
     @property
     def is_eye(self) -> bool:
         """Whether the map holds what an eye sees, and nothing else."""
-        return self.wavelengths is None and self.response is None
+        return self.wavelengths is None and self.response is None and not self.is_polarised
+
+    @property
+    def is_polarised(self) -> bool:
+        """Whether the map depends on the light's polarisation."""
+        return self.stokes or self.polarizer is not None
 
     def groups(self) -> list[Array]:
         """Return the wavelengths in groups that are solved for together, of nearly equal sizes."""
@@ -85,6 +106,8 @@ class Sensor:
         return {
             **({} if self.wavelengths is None else {"wavelengths_nm": _short(self.wavelengths)}),
             **({} if camera is None else {"camera": camera.text, "camera_white": camera.white}),
+            **({"stokes": True} if self.stokes else {}),
+            **({} if self.polarizer is None else {"polarizer_deg": degrees(self.polarizer)}),
         }
 
 

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from skybake.optics.medium import Array
 from skybake.sky.sky import Sky
 from skybake.sky.spectral_table import SpectralTable, fold_table
 from skybake.sky.table import FoldedTable
+
+if TYPE_CHECKING:
+    from skybake.sky.stokes_table import StokesTable
 
 
 class Stages:
@@ -14,6 +19,12 @@ class Stages:
     def spectral_table(self, sky: Sky, *, finely: bool = False) -> SpectralTable:
         """Light around the observer in all wavelengths; the one stage that traces rays."""
         return sky.skylight.spectral_table(sky.source, finely=finely)
+
+    def stokes_table(self, sky: Sky) -> StokesTable:
+        """Linear polarisation around the observer in all wavelengths."""
+        from skybake.sky.stokes_table import stokes_table
+
+        return stokes_table(sky.skylight, sky.source, self.spectral_table(sky))
 
     def folded_table(self, sky: Sky, rgb_weights: Array, *, finely: bool = False) -> FoldedTable:
         """Light around the observer as pixel values.

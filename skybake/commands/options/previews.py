@@ -64,6 +64,12 @@ preview_options = options_together(
         show_default="auto",
         help="Its exposure value at ISO 100; auto meters the sky as a camera does.",
     ),
+    click.option(
+        "--show",
+        type=click.Choice(choices.SHOWN),
+        show_default="light",
+        help="What it shows: the light, or its degree or angle of linear polarisation.",
+    ),
     look_options,
 )
 
@@ -80,7 +86,7 @@ sequence_preview_options = options_together(
     look_options,
 )
 
-_NAMES = ("preview_ev", "white_balance", "shot", "view")
+_NAMES = ("preview_ev", "show", "white_balance", "shot", "view")
 
 
 def picture_from_options(options: Mapping[str, Any], ev: float | str | None) -> PictureSettings:
@@ -101,6 +107,7 @@ def picture_from_options(options: Mapping[str, Any], ev: float | str | None) -> 
         view=options["view"] or choices.VIEWS[0],
         white_balance=options["white_balance"],
         shot=None if view is None else shot(*view),
+        show=options.get("show") or choices.SHOWN[0],
     )
 
 

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from skybake.image.sensor import Sensor
 
 DEFAULT = "400:700:10"
+_WHOLE = ("spectral", "stokes", "polarizer")
+"""Options of maps that have no parts and no smaller copies."""
+
 _STEP = 10.0
 _MOST = 10_000
 
@@ -79,14 +82,35 @@ sensor_options = options_together(
         help="Scale the camera's channels such that daylight D65 is equal in all, or keep their "
         "ratios and scale by green.",
     ),
+    click.option(
+        "--stokes",
+        is_flag=True,
+        help="Also write the light's polarisation: Stokes components S0 to S3 of each channel, "
+        "relative to the vertical, of an .exr.",
+    ),
+    click.option(
+        "--polarizer",
+        metavar="ANGLE",
+        type=values.bearing,
+        help="Put a linear polarising filter before the map: angle of its axis from the vertical, "
+        "counter-clockwise as seen along the view. Needs an .exr.",
+    ),
 )
 
 
 def sensor_needs(options: Mapping[str, Any]) -> Needs:
     """Return what `sensor_options`, and others with them, need to have an effect."""
-    output, spectrum, camera = options["output"], options["spectral"], options["camera"]
+    output, camera = options["output"], options["camera"]
     is_exr = output is None or output.suffix.lower() == ".exr"
+    is_filtered = options["polarizer"] is not None
+    passes_one = "cannot be combined with --polarizer, which passes one component"
     needs: dict[str, tuple[bool, str]] = {
+        "stokes": (
+            is_exr and not is_filtered,
+            passes_one if is_filtered else "needs an .exr output",
+        ),
+        "polarizer": (is_exr, "needs an .exr output"),
+        "show": (not is_filtered, passes_one),
         "spectral": (is_exr, "needs an .exr output"),
         "camera": (is_exr, "needs an .exr output"),
         "camera_white": (camera is not None, "needs --camera"),
@@ -98,8 +122,14 @@ def sensor_needs(options: Mapping[str, Any]) -> Needs:
     if camera is not None:
         lights = "cannot be combined with --camera, since lights have colours of an eye"
         needs["lights"] = (not options.get("lights"), lights)
-    if spectrum is not None:
-        whole = "cannot be combined with --spectral"
+    wholes = {
+        "spectral": spectrum,
+        "stokes": options["stokes"] or None,
+        "polarizer": options["polarizer"],
+    }
+    asked = next((name for name, value in wholes.items() if value is not None), None)
+    if asked is not None:
+        whole = f"cannot be combined with --{asked}"
         needs |= {name: (not options[name], whole) for name in ("mips", "layers")}
         needs["sun_disc"] = (options["sun_disc"] != "separate", whole)
     return needs
@@ -123,6 +153,11 @@ def sensor_from_options(options: Mapping[str, Any]) -> Sensor:
 
         response = load_camera(options["camera"], options["camera_white"] or "d65")
     try:
-        return Sensor(wavelengths=options["spectral"], response=response)
+        return Sensor(
+            wavelengths=options["spectral"],
+            response=response,
+            stokes=options["stokes"],
+            polarizer=options["polarizer"],
+        )
     except InputError as error:
         raise click.UsageError(f"--{error}") from error
