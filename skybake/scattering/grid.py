@@ -257,11 +257,16 @@ def project_polarised(
         Receives the moments.
     """
     even, odd = (each * grid.weight[i][:, None] for each in spin_functions(grid.mu[i]))
+    directions, suns, azimuths, _, wavelengths = stokes.shape
     angle = np.outer(np.arange(ORDERS), grid.azimuth)
-    share = 2.0 * math.pi / grid.azimuth.size
-    around = np.stack([share * np.cos(angle), share * np.sin(angle)], axis=2).astype(np.float32)
-    terms = np.einsum("mas,pjasw->mspjw", around, stokes, optimize=True)
+    around = np.zeros((2, ORDERS, azimuths, 2))
+    around[0, :, :, 0], around[1, :, :, 1] = np.cos(angle), np.sin(angle)
+    around *= 2.0 * math.pi / azimuths
+    terms = np.matmul(
+        around.reshape(2 * ORDERS, -1).astype(np.float32),
+        stokes.reshape(directions, suns, -1, wavelengths),
+    )
     for m in range(ORDERS):
-        moments = np.tensordot(even[:, m], terms[m, 0], axes=1)
-        moments += np.tensordot(odd[:, m], terms[m, 1], axes=1)
+        polar = np.stack([even[:, m], odd[:, m]], axis=1).astype(np.float32)
+        moments = np.tensordot(polar, terms[:, :, m::ORDERS], axes=([0, 1], [0, 2]))
         field.radiance[i, :, field.harmonics.degree.size + m] = moments
