@@ -47,12 +47,7 @@ def scatter_sunlight(
 
     The radiance is of shape (altitude, polar, sun, azimuth, wavelength).
     """
-    scaled = atmosphere.scaled
-    without_peaks = atmosphere._replace(
-        scaled=scaled._replace(peaked=scaled.peaked[:0], phase=scaled.medium.phase),
-        shells=altitude_shells(scaled.medium, FIRST_SHELLS),
-        field=no_field(scaled),
-    )
+    scaled, without_peaks = atmosphere.scaled, _without_peaks(atmosphere)
     constituents = scaled.medium.phase.shape[0]
     field = empty_field(scaled, grid.altitude, grid.sun_angle, ORDER)
     degree = np.arange(ORDER + 1)
@@ -71,6 +66,30 @@ def scatter_sunlight(
             stokes = _polarise(scaled, rays, light.single)
             project_polarised(grid, i, stokes.reshape(*_shape(grid), 2, -1), field)
     return field, radiances
+
+
+def _without_peaks(atmosphere: Atmosphere) -> Atmosphere:
+    """Keep of an atmosphere what sunlight is scattered in once, as the solver has it."""
+    scaled = atmosphere.scaled
+    return atmosphere._replace(
+        scaled=scaled._replace(peaked=scaled.peaked[:0], phase=scaled.medium.phase),
+        shells=altitude_shells(scaled.medium, FIRST_SHELLS),
+        field=no_field(scaled),
+    )
+
+
+def polarise_sunlight(
+    atmosphere: Atmosphere, grid: Grid, workers: Workers
+) -> npt.NDArray[np.float32]:
+    """Q and U at a grid's nodes of light scattered once, as of `transport_field`."""
+    scaled, without_peaks = atmosphere.scaled, _without_peaks(atmosphere)
+    shape = grid.altitude.size, *_shape(grid), 2, scaled.mixture.size
+    stokes = np.empty(shape, np.float32)
+    for i in range(grid.altitude.size):
+        rays = rays_at(scaled, grid, i)
+        light = trace_rays(without_peaks, *rays.T, max_arc=FIRST_ARC, workers=workers)
+        stokes[i] = _polarise(scaled, rays, light.single).reshape(shape[1:])
+    return stokes
 
 
 def _polarise(scaled: ScaledMedium, rays: Array, single: Array) -> npt.NDArray[np.float32]:

@@ -76,49 +76,12 @@ def trace_rays(
     Neighbours with the same r and mu share samples, so rays are best ordered by
     direction first.
     """
-    rays = np.stack([r, mu, mu_s, nu], axis=1)
-    wavelengths = atmosphere.scaled.mixture.size
-    no_stokes = np.empty((0, 2 * wavelengths), np.float32)
-    return _trace(atmosphere, rays, no_stokes, max_arc, workers)
-
-
-def trace_stokes(
-    atmosphere: Atmosphere, r: Array, mu: Array, mu_s: Array, nu: Array, workers: Workers = ALL_CPUS
-) -> tuple[RayLight, npt.NDArray[np.float32]]:
-    """Integrate light and its linear polarisation along rays, in parallel.
-
-    Parameters
-    ----------
-    atmosphere, r, mu, mu_s, nu, workers
-        As of `trace_rays`; the atmosphere's field holds polarisation.
-
-    Returns
-    -------
-    light : RayLight
-        As of `trace_rays`.
-    diffuse : ndarray of float32, shape (ray, 2, wavelength)
-        Q and U of what was scattered twice or more; the sun is to the left of the view. [sr⁻¹]
-    """
-    rays = np.stack([r, mu, mu_s, nu], axis=1)
-    stokes = np.zeros((r.size, 2 * atmosphere.scaled.mixture.size), np.float32)
-    light = _trace(atmosphere, rays, stokes, MAX_ARC, workers)
-    return light, stokes.reshape(r.size, 2, -1)
-
-
-def _trace(
-    atmosphere: Atmosphere,
-    rays: Array,
-    stokes: npt.NDArray[np.float32],
-    max_arc: float,
-    workers: Workers,
-) -> RayLight:
-    """Integrate light along rays; `stokes` receives Q and U unless it is empty."""
     scaled = atmosphere.scaled
     phases, _, wavelengths = scaled.phase.shape
-    single = np.zeros((len(rays), phases, wavelengths))
-    diffuse = np.zeros((len(rays), wavelengths), np.float32)
-    fans = group_rays(rays)
-    light = LightOfFans(atmosphere, fans, single, diffuse, stokes)
+    single = np.zeros((r.size, phases, wavelengths))
+    diffuse = np.zeros((r.size, wavelengths), np.float32)
+    fans = group_rays(np.stack([r, mu, mu_s, nu], axis=1))
+    light = LightOfFans(atmosphere, fans, single, diffuse)
     medium, starts = flatten(scaled.medium), flatten(fans.starts)
 
     def work(begin: int, end: int) -> None:
@@ -151,8 +114,6 @@ class LightOfFans:
         Receives light as of `RayLight`.
     diffuse : ndarray of float32, shape (ray, wavelength)
         Receives light as of `RayLight`.
-    stokes : ndarray of float32, shape (ray, 2 * wavelength), optional
-        Receives Q and U of the diffuse light, see `add_diffuse`.
     """
 
     def __init__(
@@ -161,7 +122,6 @@ class LightOfFans:
         fans: Fans,
         single: Array,
         diffuse: npt.NDArray[np.float32],
-        stokes: npt.NDArray[np.float32] | None = None,
     ) -> None:
         scaled, field = atmosphere.scaled, atmosphere.field
         self._medium, self._field, self._fans = scaled.medium, field, fans
@@ -176,9 +136,7 @@ class LightOfFans:
         self._has_aureole = atmosphere.aureole.source.shape[2] > 0
         self._bent = flatten(atmosphere.aureole), self._moments[0], self._sources[0]
         self._rays, self._single, self._diffuse = map(flatten, (fans, single, diffuse))
-        if stokes is None:
-            stokes = np.empty((0, 2 * diffuse.shape[1]), np.float32)
-        self._stokes = flatten(stokes)
+        self._no_stokes = flatten(np.empty((0, 2 * diffuse.shape[1]), np.float32))
 
     def allocate(self) -> tuple[Flat | None, Flat | None]:
         """Make the work space that a thread needs for `add`."""
@@ -201,6 +159,6 @@ class LightOfFans:
         sunlit = allocate_sunlit(self._medium, most)
         add_single_scattering(*self._sources, *batch, sunlit, self._single, self._diffuse)
         if self._has_field:
-            add_diffuse(*self._moments, *batch, scratch[0], self._diffuse, self._stokes)
+            add_diffuse(*self._moments, *batch, scratch[0], self._diffuse, self._no_stokes)
         if self._has_aureole:
             add_aureole(*self._bent, *batch, scratch[1], self._diffuse)
