@@ -10,14 +10,36 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.optics.phase import eval_phase, scattering_angles
-from skybake.optics.spectrum import eval_spectrum
+from skybake.optics.spectrum import check_range, eval_spectrum
 from skybake.optics.wigner import wigner
-from skybake.preset import Phase, RayleighPhase
+from skybake.preset import (
+    Absorber,
+    Gas,
+    Phase,
+    Planet,
+    PolarisationTable,
+    RayleighPhase,
+    TabulatedPhase,
+)
 
 Array = npt.NDArray[np.float64]
 
 ELEMENTS = 3
 """P12, P22 and P33."""
+
+
+def unpolarised_constituents(planet: Planet) -> list[str]:
+    """Names of the constituents that scatter without a matrix, and count as unpolarised."""
+    names = []
+    for constituent in planet.constituents:
+        if isinstance(constituent, (Gas, Absorber)):
+            continue
+        phase = constituent.phase
+        if isinstance(phase, TabulatedPhase) and phase.polarisation is not None:
+            continue
+        if not isinstance(phase, RayleighPhase):
+            names.append(constituent.name)
+    return names
 
 
 def build_matrix(phase: Phase, values: Array, wavelengths: Array) -> Array:
@@ -39,7 +61,24 @@ def build_matrix(phase: Phase, values: Array, wavelengths: Array) -> Array:
     """
     if isinstance(phase, RayleighPhase):
         return rayleigh_matrix(eval_spectrum(phase.depolarisation, wavelengths))
+    if isinstance(phase, TabulatedPhase) and phase.polarisation is not None:
+        p12, p33 = _ratios(phase.polarisation, wavelengths)
+        return np.stack([values * p12, values, values * p33])
     return unpolarising_matrix(values)
+
+
+def _ratios(table: PolarisationTable, wavelengths: Array) -> Array:
+    """P12 and P33 over P11, shape (2, SCATTERING_ANGLES, wavelength)."""
+    check_range(table.where, table.wavelength, wavelengths)
+    position = np.interp(wavelengths, table.wavelength, np.arange(len(table.wavelength)))
+    left = np.minimum(position.astype(int), len(table.wavelength) - 2)
+    share = position - left
+    angles = scattering_angles()
+    ratios = []
+    for element in (table.p12, table.p33):
+        bands = np.stack([np.interp(angles, table.angle, each) for each in element], axis=1)
+        ratios.append((1.0 - share) * bands[:, left] + share * bands[:, left + 1])
+    return np.stack(ratios)
 
 
 def rayleigh_matrix(depolarisation: Array) -> Array:
@@ -122,8 +161,8 @@ def matrix_moments(matrix: Array, phase: Array, order: int) -> Array:
     Returns
     -------
     ndarray of float64, shape (constituent, 3, order + 1, wavelength)
-        beta_l, alpha2_l and alpha3_l relative to the mean of P11, such that without peaks the moments
-        of scattered light are chi_l I + beta_l E, beta_l I + alpha2_l E and alpha3_l B.
+        beta_l, alpha2_l and alpha3_l relative to the mean of P11, such that the moments of
+        scattered light are chi_l I + beta_l E, beta_l I + alpha2_l E and alpha3_l B.
     """
     theta = scattering_angles()
     step = np.diff(theta)

@@ -158,11 +158,12 @@ def pad_wavelengths(medium: Medium) -> Medium:
     """Repeat the last wavelength until their number is a multiple of `LANES`."""
     last = medium.ground_albedo.size - 1
     index = np.minimum(np.arange(-(-(last + 1) // LANES) * LANES), last)
+    matrix = medium.matrix[..., index] if len(medium.matrix) else medium.matrix
     return medium._replace(
         scattering=np.ascontiguousarray(medium.scattering[:, index]),
         extinction=np.ascontiguousarray(medium.extinction[:, index]),
         phase=np.ascontiguousarray(medium.phase[:, :, index]),
-        matrix=np.ascontiguousarray(medium.matrix[..., index]) if len(medium.matrix) else medium.matrix,
+        matrix=np.ascontiguousarray(matrix),
         ground_albedo=medium.ground_albedo[index],
     )
 

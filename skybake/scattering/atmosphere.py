@@ -38,8 +38,8 @@ from skybake.scattering.tables import Atmosphere
 from skybake.scattering.transmittance import build_columns
 from skybake.transport.shells import altitude_shells
 
-VECTOR = "vector"
-"""Method that solves for linear polarisation as well."""
+SCALAR = "scalar"
+"""Method of all orders of scattering as if light were not polarised."""
 
 KEPT = 4
 """Atmospheres kept in memory; the maps of a sequence share one, or each has its own."""
@@ -54,8 +54,9 @@ def build_atmosphere(medium: Medium, method: str, workers: Workers = ALL_CPUS) -
     ----------
     medium : Medium
         The atmosphere.
-    method : {"full", "hillaire"}
-        All orders of scattering, or Hillaire's closure.
+    method : {"full", "scalar", "hillaire"}
+        All orders of scattering with polarised light, or as if light were not polarised, or
+        Hillaire's closure.
     workers : Workers, optional
         Threads that do the work.
 
@@ -76,7 +77,7 @@ def dark_atmosphere(medium: Medium, method: str, workers: Workers = ALL_CPUS) ->
     Parameters are those of `build_atmosphere`.
     """
     padded = pad_wavelengths(medium)
-    if method != VECTOR:
+    if method == SCALAR:
         padded = padded._replace(matrix=padded.matrix[:0])
     scaled = keep_unscaled(padded) if method == "hillaire" else scale_medium(padded, ORDER)
     return Atmosphere(

@@ -62,7 +62,8 @@ class DiffuseField(NamedTuple):
         Scattering coefficient times chi_l at density 1. [km⁻¹]
     polarised : ndarray of float64, shape (constituent, 2, wavelength)
         Scattering coefficient times beta_2 and alpha2_2 at density 1, see
-        `skybake.optics.matrix.matrix_moments`; of no constituent in a field without polarisation. [km⁻¹]
+        `skybake.optics.matrix.matrix_moments`; of no constituent in a field without
+        polarisation. [km⁻¹]
     radiance : ndarray of float32, shape (altitude, sun, harmonic, wavelength)
         Moments of the radiance scattered or reflected at least once, and after them, if there is
         polarisation, those of `skybake.scattering.polarised`. [sr⁻¹]

@@ -148,7 +148,6 @@ def add_diffuse(field, radiance, peaks, scaled, fans, begin, end, samples, scrat
     harmonic, factor, scattering = scratch.harmonic, scratch.factor, scratch.scattering
     weight, sky = scratch.weight, scratch.sky
     polar, emitted = scratch.polar, scratch.emitted
-    is_polarised, wants_stokes = field.polarised.shape[0] > 0, stokes.shape[0] > 0
     for fan in range(begin, end):
         i, count = fans.first[fan], fans.first[fan + 1] - fans.first[fan]
         r, mu = fans.starts[fan, 0], fans.starts[fan, 1]
@@ -170,15 +169,15 @@ def add_diffuse(field, radiance, peaks, scaled, fans, begin, end, samples, scrat
             )
             fill_harmonics(field.harmonics, mu_here, harmonic)
             fill_factors(harmonic, scattering, degrees, factor)
-            if is_polarised:
-                fill_polarised_scattering(field, samples, n, weight, scratch.coupling)
-                fill_spin_functions(mu_here, scratch.spins)
+            is_polarised = degrees >= ORDERS and fill_polarised_scattering(
+                field, samples, n, weight, scratch.coupling
+            )
             low, u = altitude_weight(field, radius - medium.r_bottom)
             at = _fill_peaks(peaks, scaled, samples, n, radius, mu_here, polar, emitted)
             for j in range(least, most):
                 below, above = radiance[low, j], radiance[low + 1, j]
                 sum_degrees(below, above, u, factor, degrees, wavelengths, fourier[j])
-                if is_polarised and degrees >= ORDERS:
+                if is_polarised:
                     add_polarised_source(
                         below, above, u, harmonic, scratch.coupling, fourier[j], scratch.twist[j]
                     )
@@ -188,12 +187,12 @@ def add_diffuse(field, radiance, peaks, scaled, fans, begin, end, samples, scrat
                     )
             for q in range(count):
                 add_orders(fourier, node[q], weights[q], cosine[q], degrees, series, out[i + q])
-            if wants_stokes and degrees >= ORDERS:
-                for q in range(count):
-                    add_twists(
-                        scratch.twist, node[q], weights[q], cosine[q], scratch.spins,
-                        scratch.turned, stokes[i + q],
-                    )  # fmt: skip
+            if is_polarised and stokes.shape[0] > 0:
+                fill_spin_functions(mu_here, scratch.spins)
+                add_twists(
+                    scratch.twist, node, weights, cosine, scratch.spins, scratch.turned,
+                    stokes[i : i + count],
+                )  # fmt: skip
         if samples.hits_ground[fan - begin]:
             length = samples.length[fan - begin]
             for q in range(count):

@@ -47,7 +47,12 @@ def fill_spin_functions(mu, out):
 
 @kernel
 def fill_polarised_scattering(field, samples, n, weight, out):
-    """Write weight * coefficient * (beta_2, alpha2_2) of a step's samples, (2, wavelength)."""
+    """Write weight * coefficient * (beta_2, alpha2_2) of a step's samples, (2, wavelength).
+
+    Returns whether the field is polarised at all.
+    """
+    if field.polarised.shape[0] == 0:
+        return False
     out[...] = 0.0
     for c in range(field.polarised.shape[0]):
         low, high = samples.density[n, c], samples.density[n + 1, c]
@@ -58,6 +63,7 @@ def fill_polarised_scattering(field, samples, n, weight, out):
         for i in range(2):
             for k in range(weight.size):
                 out[i, k] += np.float32(field.polarised[c, i, k]) * weight[k]
+    return True
 
 
 @kernel
@@ -91,10 +97,16 @@ def add_polarised_source(below, above, u, harmonic, scattering, fourier, twist):
 
 @kernel
 def add_twists(twist, node, weights, cosine, spins, series, out):
-    """Add Q and U of scattered light, interpolated between four suns, to `out`, (2 * wavelength,).
+    """Add Q and U of scattered light to the rays of a fan, (ray, 2 * wavelength).
 
-    The sun is to the left.
+    Rays are interpolated between four suns as `node` and `weights` say; the sun is to the left.
     """
+    for q in range(out.shape[0]):
+        _add_twist(twist, node[q], weights[q], cosine[q], spins, series, out[q])
+
+
+@kernel
+def _add_twist(twist, node, weights, cosine, spins, series, out):
     wavelengths = out.size // 2
     a, b = np.float32(weights[0]), np.float32(weights[1])
     c, d = np.float32(weights[2]), np.float32(weights[3])

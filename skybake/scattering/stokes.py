@@ -12,7 +12,7 @@ from skybake.jit.kernel import kernel
 from skybake.optics.delta_m import ScaledMedium
 from skybake.optics.medium import Array
 from skybake.scattering.fans import Fans
-from skybake.scattering.field import DiffuseField, altitude_weight, sun_weights
+from skybake.scattering.field import altitude_weight, sun_weights
 from skybake.scattering.spin_harmonics import (
     SpinHarmonics,
     build_spin_harmonics,
@@ -147,7 +147,7 @@ def add_stokes(field, radiance, polarisation, r_bottom, fans, begin, end, sample
 
 @kernel
 def _fill_scattering(polarisation, samples, n, weight, out):
-    """Write what a step scatters, (3, degree, wavelength); the second sample's share or, of 0, -1."""
+    """Write what a step scatters, (3, degree, wavelength); the second sample's share, or -1."""
     out[...] = 0.0
     first = second = 0.0
     for c in range(polarisation.source.shape[0]):

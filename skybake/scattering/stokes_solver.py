@@ -12,7 +12,7 @@ from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.delta_m import ScaledMedium
 from skybake.optics.medium import Array
 from skybake.scattering.fans import group_rays
-from skybake.scattering.grid import ORDER, Grid, build_grid
+from skybake.scattering.grid import Grid, build_grid
 from skybake.scattering.multiple import side_by_side
 from skybake.scattering.passes import Batch, polarise_sunlight, trace_grid
 from skybake.scattering.ray import chunk_of_fans
@@ -25,12 +25,19 @@ from skybake.transport.trace import MAX_ARC, trace
 DIPOLES = 2
 """Order of the matrices of molecules."""
 
-PASSES = 2
-"""Scatterings by what is larger than molecules that are followed before the final ray's own."""
+ORDER = 8
+"""Of the matrices of particles: 14 orders, as the intensity has, change Q / I by up to 0.001."""
+
+NEGLIGIBLE = 1e-4
+"""Moment of a matrix below which an order is left out."""
+
+MAX_PASSES = 8
+TOLERANCE = 3e-3
+"""Change of polarised light in a pass, relative to all light, at which passes end."""
 
 
 def solve_polarisation(
-    atmosphere: Atmosphere, workers: Workers = ALL_CPUS, order: int = ORDER, passes: int = PASSES
+    atmosphere: Atmosphere, workers: Workers = ALL_CPUS, order: int = ORDER
 ) -> Polarisation:
     """Solve for the linear polarisation of a solved field, of all orders of the matrices.
 
@@ -40,6 +47,8 @@ def solve_polarisation(
         Its field holds the moments of degree 2 of its polarisation.
     workers : Workers, optional
         Who does the work.
+    order : int, optional
+        Highest order of the matrices of particles.
 
     Notes
     -----
@@ -55,18 +64,31 @@ def solve_polarisation(
         grid = build_grid(scaled)
         rays = trace_grid(scaled, grid)
         first = polarise_sunlight(atmosphere, grid, workers)
-        for _ in range(passes):
-            here = polarisation_of(scaled, order, moments.reshape(*moments.shape[:2], -1))
+        size = np.linalg.norm(field.radiance[:, :, 0], axis=0)
+        for _ in range(MAX_PASSES):
+            here = polarisation_of(scaled, order, _flat(moments))
             stokes = first + _transport(atmosphere, here, grid, rays, workers).reshape(first.shape)
+            before = moments.copy()
             for i in range(len(moments)):
                 _project(grid, i, here, stokes[i], moments[i])
-    return polarisation_of(scaled, order, moments.reshape(*moments.shape[:2], -1))
+            change = np.linalg.norm(moments - before, axis=(0, 2))
+            judged = grid.sun_angle < grid.last_judged
+            if (change[judged] < TOLERANCE * size[judged]).all():
+                break
+    return polarisation_of(scaled, order, _flat(moments))
+
+
+def _flat(moments: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
+    """Put moments and wavelengths in one row."""
+    return moments.reshape(*moments.shape[:2], -1)
 
 
 def _is_beyond_dipoles(scaled: ScaledMedium) -> bool:
     """Whether a constituent that scatters has moments beyond those of molecules."""
     scatters = scaled.medium.scattering.max(axis=1) > 0.0
-    return bool(np.abs(scaled.matrix_moments[scatters][:, :, DIPOLES + 1 :]).max(initial=0.0) > 1e-4)
+    return bool(
+        np.abs(scaled.matrix_moments[scatters][:, :, DIPOLES + 1 :]).max(initial=0.0) > 1e-4
+    )
 
 
 def _transport(
