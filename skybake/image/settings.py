@@ -80,7 +80,7 @@ class Lighting:
         Draw the disc without an edge, see `skybake.sky.drawn_disc.DrawnDisc`.
     sun_strength : float
         Factor of the disc's light, greater than 0; the sky keeps its own.
-    method : {"full", "hillaire", "march"}
+    method : {"full", "scalar", "hillaire", "march"}
         How light is transported, see `skybake.sky.sky.Sky`.
     moon : Moon or None
         What may be in front of the sun.

@@ -97,7 +97,11 @@ def _field_of(atmosphere: Atmosphere, source: Array) -> DiffuseField:
     field, grid = atmosphere.field, build_grid(atmosphere.scaled)
     theta = np.linspace(0.0, 0.5 * math.pi, STEPS)
     weights = _sun_shares(field.sun_angle, theta, source)
-    even = field.harmonics.azimuthal == 0
+    plain = field.harmonics.degree.size
+    even = np.zeros(field.radiance.shape[2], np.bool_)
+    even[:plain] = field.harmonics.azimuthal == 0
+    # Of the moments of polarised light the first is the even one.
+    even[plain : plain + 1] = True
     radiance = np.zeros((len(field.altitude), *field.radiance.shape[2:]))
     radiance[:, even] = np.einsum("s,aslk->alk", weights, field.radiance[:, :, even])
     ground = weights @ field.ground
@@ -108,7 +112,7 @@ def _field_of(atmosphere: Atmosphere, source: Array) -> DiffuseField:
         # Just below the horizontal the source is as at the horizon.
         seen = np.interp(np.arccos(np.clip(mu, 0.0, 1.0)), theta, source)[:, None] * passing
         moments = (harmonics_at(field.harmonics, mu) * weight[:, None]).T @ seen
-        radiance[i, even] += moments[even]
+        radiance[i, :plain][even[:plain]] += moments[even[:plain]]
         if i == 0:
             ground = ground + (weight * np.maximum(mu, 0.0)) @ seen
     suns = len(field.sun_angle)
