@@ -122,14 +122,9 @@ def sensor_needs(options: Mapping[str, Any]) -> Needs:
     if camera is not None:
         lights = "cannot be combined with --camera, since lights have colours of an eye"
         needs["lights"] = (not options.get("lights"), lights)
-    wholes = {
-        "spectral": spectrum,
-        "stokes": options["stokes"] or None,
-        "polarizer": options["polarizer"],
-    }
-    asked = next((name for name, value in wholes.items() if value is not None), None)
-    if asked is not None:
-        whole = f"cannot be combined with --{asked}"
+    asked = [name for name in _WHOLE if options[name] is not None and options[name] is not False]
+    if asked:
+        whole = f"cannot be combined with --{asked[0]}"
         needs |= {name: (not options[name], whole) for name in ("mips", "layers")}
         needs["sun_disc"] = (options["sun_disc"] != "separate", whole)
     return needs
