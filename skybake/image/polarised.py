@@ -33,7 +33,7 @@ def check_polarisation(planet: Planet, settings: MapSettings, what: str) -> None
     Raises
     ------
     InputError
-        With clouds, in an eclipse, by direct quadrature, or with an extended horizon.
+        With clouds, in an eclipse, by another method than full, or with an extended horizon.
     """
     if not all(layer.is_empty for layer in planet.clouds):
         raise InputError(
@@ -42,9 +42,10 @@ def check_polarisation(planet: Planet, settings: MapSettings, what: str) -> None
         )
     if settings.lighting.moon is not None:
         raise InputError(f"{what}: needs a sun without a moon in front, got one")
-    if settings.lighting.method == "march":
+    if settings.lighting.method != "full":
         raise InputError(
-            f"{what}: needs a method other than march, whose light has no polarisation"
+            f"{what}: needs the method full, which alone knows polarisation, "
+            f"got {settings.lighting.method}"
         )
     if settings.view.below_horizon == "extend":
         raise InputError(f"{what}: needs ground or black below the horizon, got extend")
