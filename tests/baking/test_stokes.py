@@ -182,9 +182,7 @@ def test_constituents_without_a_matrix_are_named(tmp_path):
 def test_a_picture_shows_degree_or_angle(tmp_path, show):
     picture = skybake.PictureSettings(show=show)
     shown = settings(64, sensor={})
-    skybake.bake(
-        "earth", tmp_path / "a.exr", shown, preview=tmp_path / "a.png", picture=picture
-    )
+    skybake.bake("earth", tmp_path / "a.exr", shown, preview=tmp_path / "a.png", picture=picture)
     from PIL import Image
 
     codes = np.asarray(Image.open(tmp_path / "a.png")).astype(int)
