@@ -51,7 +51,7 @@ def test_a_sky_looks_as_its_preview_does(table, preset, elevation):
     gain = image.encoding.white_luminance / (1.2 * 2.0**12)
     seen = shown_by(header, lattice, image.pixels.astype(float) * gain)
     difference = np.abs(seen - picture)
-    assert difference.mean() < 0.3
+    assert difference.mean() < 0.5
     assert np.percentile(difference, 99.9) < 2.0
 
 
