@@ -8,9 +8,9 @@ const MIDDLE_GREY = 0.18;
 const REFLECTED = 8; // ISO 100 over the constant 12.5 of a meter for reflected light
 
 const KNOWN = [
-  ["sun_illuminance_lx", "Sun on the ground", lux],
-  ["sky_illuminance_lx", "Sky on the ground", lux],
-  ["sun_temperature_k", "Sun's colour", (kelvin, figures) => coloured(figures.sun_colour, kelvin ? `${round(kelvin, 3)} K` : "")],
+  ["sun_illuminance_lx", "Sunlight", lux],
+  ["sky_illuminance_lx", "Skylight", lux],
+  ["sun_temperature_k", "Sun's colour", (kelvin, figures) => coloured(figures.sun_colour, kelvin ? `${round(kelvin, 3)}\u00a0K` : "")],
   ["sun_elevation_deg", "Sun's elevation", degrees],
   ["sun_azimuth_deg", "Sun's bearing", degrees],
   ["optical_depth_550", "Optical depth", (depth) => round(depth, 3)],

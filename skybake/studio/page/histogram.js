@@ -43,7 +43,7 @@ export function drawHistogram(bins, gain) {
     context.fillStyle = colours[half];
     context.globalAlpha = 0.8;
     for (const [bin, weight] of bins[half]) {
-      const bar = (weight / most) * (height - 14 * scale);
+      const bar = Math.sqrt(weight / most) * (height - 14 * scale);
       context.fillRect(place(bin / PER_STOP + shift), height - 12 * scale - bar, width / ((TO - FROM) * PER_STOP) + 0.5, bar);
     }
   }

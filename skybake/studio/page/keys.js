@@ -30,7 +30,7 @@ export function startKeys(actions) {
     ["Drag, arrows", "Look around"],
     ["Wheel, + −", "Zoom"],
     ["Shift+drag", "Put the sun there"],
-    ["Double click", "Look south again"],
+    ["Double click", "Look as at first"],
   ];
   const listed = [...keys.filter(([, title]) => title), ...others];
   byId("keys-list").replaceChildren(...listed.flatMap(([name, title]) => [make("dt", {}, make("kbd", {}, name)), make("dd", {}, title)]));

@@ -3,6 +3,8 @@
 import { make } from "./dom.js";
 import { SliderScale, readQuantity, writeQuantity } from "./scale.js";
 
+const RANGED = new Set(["angle", "length", "number", "integer", "duration"]);
+const LONG = new Set(["text", "list", "size", "direction", "time", "date", "moon", "zone"]);
 const BIG_STEP = 10;
 let made = 0;
 
@@ -60,11 +62,11 @@ export class Knob {
   #isLong() {
     const { kind, multiple, choices } = this.spec;
     if (multiple) return true;
-    return kind === "choice" ? choices.some((choice) => choice.length > 14) : ["text", "list", "time"].includes(kind);
+    return kind === "choice" ? choices.some((choice) => choice.length > 14) : LONG.has(kind);
   }
 
   #field() {
-    const { kind, choices, multiple, metavar } = this.spec;
+    const { kind, choices } = this.spec;
     const common = { id: this.id, class: "value", "aria-describedby": `${this.id}-help ${this.id}-fault` };
     if (kind === "flag") return this.#flag(common);
     if (kind === "choice" && choices) {
@@ -77,7 +79,7 @@ export class Knob {
       type: "text",
       spellcheck: "false",
       inputmode: kind === "integer" || kind === "number" ? "text" : null,
-      placeholder: placeholderOf(this.spec, multiple ? `${metavar ?? ""}; …` : metavar),
+      placeholder: defaultText(this.spec),
       onchange: () => this.#typed(),
       onkeydown: (event) => this.#key(event),
     });
@@ -99,7 +101,7 @@ export class Knob {
 
   #slider() {
     const { min, max, kind, unit } = this.spec;
-    const ranged = ["angle", "length", "number", "integer"].includes(kind);
+    const ranged = RANGED.has(kind);
     if (!ranged || !Number.isFinite(min) || !Number.isFinite(max) || max <= min) return null;
     const scale = new SliderScale(this.spec);
     const input = make("input", {
@@ -114,13 +116,15 @@ export class Knob {
     const element = make(
       "div",
       { class: "slider" },
+      make("span", { "aria-hidden": "true" }, writeQuantity(min, unit)),
       input,
-      make("div", { class: "range", "aria-hidden": "true" }, make("span", {}, writeQuantity(min, unit)), make("span", {}, writeQuantity(max, unit))),
+      make("span", { "aria-hidden": "true" }, writeQuantity(max, unit)),
     );
     return {
       element,
       show: (number) => {
         const shown = number ?? this.spec.default ?? min;
+        element.classList.toggle("unset", number === null && !Number.isFinite(this.spec.default));
         if (document.activeElement !== input || Math.abs(scale.value(input.valueAsNumber) - shown) > 1e-9) {
           input.value = scale.place(shown);
         }
@@ -201,20 +205,15 @@ function defaultText({ default_text: text, default: value, unit }) {
   return shown === null || shown === undefined || shown === "" ? "default" : `${shown}`.replace(/^\((.*)\)$/, "$1");
 }
 
-function placeholderOf(spec, metavar) {
-  const text = defaultText(spec);
-  return text === "default" ? (metavar ?? "") : text;
-}
-
 function helpOf(spec) {
-  const { help, flags, min, max, unit, source, key } = spec;
+  const { help, flags, metavar, min, max, unit, source, key } = spec;
   const facts = [];
   if (Number.isFinite(min) && Number.isFinite(max)) facts.push(`${writeQuantity(min, unit)} to ${writeQuantity(max, unit)}`);
   const usual = defaultText(spec);
   if (usual !== "default") facts.push(`default ${usual}`);
   return [
     help ? make("div", {}, help) : null,
-    make("div", {}, make("code", {}, key ? `--set ${key}=…` : (flags ?? []).join(" / ")), facts.length ? ` · ${facts.join(" · ")}` : ""),
+    make("div", {}, make("code", {}, key ? `--set ${key}=…` : `${(flags ?? []).join(" / ")} ${metavar ?? ""}`), facts.length ? ` · ${facts.join(" · ")}` : ""),
     source ? make("div", {}, `Source: ${source}`) : null,
   ].filter(Boolean);
 }

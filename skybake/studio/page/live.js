@@ -82,7 +82,8 @@ export class Live extends EventTarget {
       this.views.planetAspect = frame.width / frame.height;
       this.#keep("planet-now", { ...frame, kind: PLANET });
     } else {
-      this.#keep("now", { ...frame, lighting: lighting(frame) });
+      const light = lighting(frame);
+      this.#keep("now", { ...frame, lighting: light, drawn: light.texels });
       this.dispatchEvent(new CustomEvent("command", { detail: frame.command }));
     }
     if (!frame.final) return;

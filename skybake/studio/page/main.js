@@ -110,7 +110,7 @@ function actionsOf({ store, views, exposure, compare, gallery, bake, out, live }
     redo: () => store.redo(),
     bake: () => bake.open(),
     views: Views.kinds.map((kind) => [titles[kind], () => views.choose(kind)]),
-    stops: () => views.show(views.shown === "stops" ? "picture" : "stops"),
+    stops: () => views.toggleStops(),
     balls: () => views.toggleBalls(),
     exposure: () => exposure.toggle(),
     darker: () => exposure.move(-THIRD),

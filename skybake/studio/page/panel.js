@@ -3,7 +3,8 @@
 import { byId, make } from "./dom.js";
 import { Knob } from "./knob.js";
 
-const OPEN = ["sun", "world", "observer", "clouds"];
+const ORDER = ["Sun", "Time and place", "Observer", "Clouds", "World", "Moon", "Night", "Picture", "Sun's disc", "Map", "File"];
+const OPEN = ["Sun", "Observer", "Clouds"];
 const ELSEWHERE = ["preset", "set", "preview-ev"];
 
 /** All knobs; `special` are elements by the name of the option whose knob they stand for. */
@@ -11,7 +12,8 @@ export class Panel {
   constructor(groups, store, client) {
     Object.assign(this, { store, client, knobs: new Map(), groups: [] });
     this.container = byId("groups");
-    for (const { title, options } of groups) this.#group(title, options);
+    const ordered = [...groups].sort((one, other) => rank(one.title) - rank(other.title));
+    for (const { title, options } of ordered) this.#group(title, options);
     byId("search").addEventListener("input", (event) => this.find(event.target.value));
     store.addEventListener("change", () => this.show());
   }
@@ -67,9 +69,9 @@ export class Panel {
     if (world.source) group.body.append(make("p", { class: "source" }, world.source));
     for (const value of world.values) group.add(this.#worldKnob(value));
     this.worldGroup = group;
-    const [first] = this.groups;
+    const before = this.groups.find((one) => one.title === "World") ?? this.groups.at(-1);
     this.groups = [...this.groups, group];
-    first?.element.after(group.element);
+    before?.element.after(group.element);
     this.show();
   }
 
@@ -125,7 +127,7 @@ export class Panel {
   #frame(title, names) {
     const changes = make("span", { class: "changes" });
     const body = make("div", { class: "body" });
-    const isOpen = OPEN.some((word) => title.toLowerCase().startsWith(word));
+    const isOpen = OPEN.includes(title);
     const element = make("details", { class: "knob-group", open: isOpen }, make("summary", {}, title, changes), body);
     const group = { title, names, body, changes, element, knobs: [] };
     group.add = (knob) => {
@@ -144,6 +146,11 @@ export class Panel {
     const check = (text) => this.client.get("/api/parse", { option: "set", text: `${spec.key}=${text}` });
     return new Knob({ kind: "number", name: spec.key, ...spec, unit: null, title: withUnit(spec) }, value, check);
   }
+}
+
+function rank(title) {
+  const place = ORDER.indexOf(title);
+  return place < 0 ? ORDER.length : place;
 }
 
 function withUnit({ title, unit }) {

@@ -1,5 +1,7 @@
 // Looking around, zooming, and putting the sun somewhere: by mouse, finger and keys.
 
+import { FIRST_LOOK } from "./views.js";
+
 const SUN_NAMES = { azimuth: "sun-azimuth", elevation: "sun" };
 const TURN = 5;
 const ZOOM = 1.12;
@@ -42,7 +44,7 @@ export function startPointer(views, store, probe) {
     views.zoom(ZOOM ** Math.sign(event.deltaY));
   }, { passive: false });
   canvas.addEventListener("keydown", (event) => key(views, event));
-  canvas.addEventListener("dblclick", () => views.lookAt({ azimuth: 180, elevation: 12, fov: 75 }));
+  canvas.addEventListener("dblclick", () => views.lookAt(FIRST_LOOK));
 }
 
 function drag(views, right, down) {

@@ -6,6 +6,15 @@ import { FRAGMENT, VERTEX, VIEWS } from "./shaders.js";
 
 const IDENTITY = [1, 0, 0, 0, 1, 0, 0, 0, 1];
 const SUN_RADIUS = 0.00465;
+// Angle that the height of a view covers, about.
+const PIXEL_SPANS = {
+  look: (half) => 2 * half,
+  set: (half) => 2 * half,
+  equirect: () => Math.PI,
+  fisheye: () => Math.PI,
+  planet: () => 1,
+  cross: () => (3 * Math.PI) / 2,
+};
 const SET_HALF_WIDTH = 0.41;
 
 /** Error of a browser that cannot draw. */
@@ -26,7 +35,6 @@ export class Renderer {
     this.#set("sky", "uniform1i", 0);
     this.#set("table", "uniform1i", 1);
     this.#set("bands", "uniform3fv", new Float32Array(BAND_VALUES));
-    this.#set("sunRadius", "uniform1f", SUN_RADIUS);
   }
 
   /** Keep a picture under a name. */
@@ -38,7 +46,7 @@ export class Renderer {
     gl.bindTexture(gl.TEXTURE_2D, texture);
     const wrap = frame.kind === "planet" ? gl.CLAMP_TO_EDGE : gl.REPEAT;
     filtered(gl, gl.TEXTURE_2D, [wrap, gl.CLAMP_TO_EDGE]);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGB16F, frame.width, frame.height, 0, gl.RGB, gl.HALF_FLOAT, frame.texels);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGB16F, frame.width, frame.height, 0, gl.RGB, gl.HALF_FLOAT, frame.drawn ?? frame.texels);
     this.#skies.set(name, { texture, lighting: frame.lighting });
   }
 
@@ -94,7 +102,8 @@ export class Renderer {
     this.#set("isFalse", "uniform1i", Number(isFalse));
     this.#set("gain", "uniform1f", gain);
     this.#matrix("balance", balance ?? IDENTITY);
-    this.#camera(kind, camera, rectangle[2] / rectangle[3]);
+    this.#camera(kind, camera, rectangle[2] / rectangle[3], rectangle[3]);
+    this.#sun(sky.lighting);
     if (kind === "set") this.#lights(sky.lighting, camera);
     gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
   }
@@ -108,20 +117,29 @@ export class Renderer {
     gl.clear(gl.COLOR_BUFFER_BIT);
   }
 
-  #camera(kind, camera, aspect) {
+  #camera(kind, camera, aspect, height) {
     const { right, up, forward } = basis(camera);
     const half = kind === "set" ? Math.max(SET_HALF_WIDTH / aspect, 0.24) : halfHeight(camera, aspect);
     this.#set("halfAngle", "uniform2f", half * aspect, half);
+    this.#set("pixel", "uniform1f", PIXEL_SPANS[kind](half) / height);
     this.#set("right", "uniform3f", ...right);
     this.#set("up", "uniform3f", ...up);
     this.#set("forward", "uniform3f", ...forward);
   }
 
-  #lights({ harmonics, sunlight, sunward }, camera) {
+  // Planets from afar have none: their pictures hold all that is to be seen.
+  #sun({ sunlight, sunward, disc } = {}) {
+    const { radiance = [0, 0, 0], radius = SUN_RADIUS, floor = -1 } = disc ?? {};
+    this.#set("discLight", "uniform3f", ...radiance);
+    this.#set("sunRadius", "uniform1f", radius);
+    this.#set("sunFloor", "uniform1f", floor);
+    this.#set("sunlight", "uniform3f", ...(sunlight ?? [0, 0, 0]));
+    this.#set("sunward", "uniform3f", ...(sunward ?? [0, -1, 0]));
+  }
+
+  #lights({ harmonics }, camera) {
     const level = basis({ azimuth: camera.azimuth, elevation: 0 });
     this.#set("harmonics", "uniform3fv", new Float32Array(harmonics.flat()));
-    this.#set("sunlight", "uniform3f", ...sunlight);
-    this.#set("sunward", "uniform3f", ...sunward);
     this.#set("onRight", "uniform3f", ...level.right);
     this.#set("onForward", "uniform3f", ...level.forward);
   }

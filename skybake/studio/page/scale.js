@@ -6,7 +6,9 @@ const TO_UNIT = {
   m: { m: 1, km: 1e3, ft: 0.3048, mi: 1609.344 },
   DU: { DU: 1 },
   s: { s: 1, min: 60, h: 3600 },
+  min: { min: 1, s: 1 / 60, h: 60 },
 };
+const TYPED = new Set(["deg", "km", "m", "DU", "s", "min", "h"]);
 const QUANTITY = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*([a-z]*)\s*$/i;
 const LEAST_SHARE = 2e-7;
 const STEPS = 1000;
@@ -15,15 +17,14 @@ const STEPS = 1000;
 export function readQuantity(text, unit) {
   const match = QUANTITY.exec(text ?? "");
   if (!match) return null;
-  const factor = unit ? TO_UNIT[unit]?.[match[2]] : match[2] === "" ? 1 : undefined;
-  if (factor === undefined) return unit === match[2] ? Number(match[1]) : null;
-  return Number(match[1]) * factor;
+  const factor = TO_UNIT[unit]?.[match[2]] ?? (TYPED.has(unit) || match[2] !== "" ? null : 1);
+  return factor === null ? null : Number(match[1]) * factor;
 }
 
 /** Text of a number as one would type it. */
 export function writeQuantity(value, unit, digits = 6) {
   if (unit === "km" && Math.abs(value) < 1) return `${plain(value * 1000, digits)}m`;
-  return `${plain(value, digits)}${unit ?? ""}`;
+  return `${plain(value, digits)}${TYPED.has(unit) ? unit : ""}`;
 }
 
 function plain(value, digits) {

@@ -28,15 +28,24 @@ uniform vec3 right, up, forward;
 uniform vec2 halfAngle;        // tangents, across and up
 uniform vec3 bands[17];
 uniform vec3 harmonics[9];     // irradiance without the sun
-uniform vec3 sunward, sunlight;
-uniform float sunRadius;
+uniform vec3 sunward, sunlight, discLight;
+uniform float sunRadius, sunFloor; // and the sine of the elevation below which it is hidden
 uniform vec3 onRight, onForward;
 
 const float PI = 3.141592653589793;
 
+uniform float pixel;           // angle of one, about
+
 vec3 lookUp(vec3 d) {
   vec2 at = vec2(atan(d.x, -d.z) / (2.0 * PI), acos(clamp(d.y, -1.0, 1.0)) / PI);
-  return textureLod(sky, at, 0.0).rgb;
+  vec3 light = textureLod(sky, at, 0.0).rgb;
+  // An outline by angles is round at every zoom; texels as large as the disc are not.
+  float away = length(cross(d, sunward));
+  if (dot(d, sunward) < 0.0 || away > 2.0 * sunRadius + 0.01) return light;
+  float soft = max(0.7 * pixel, 0.02 * sunRadius);
+  float share = 1.0 - smoothstep(sunRadius - soft, sunRadius + soft, away);
+  share *= smoothstep(sunFloor - soft, sunFloor + soft, d.y);
+  return light + discLight * share;
 }
 `;
 
@@ -176,7 +185,11 @@ void main() {
     colour = vec4(set(), 1.0);
     return;
   }
-  if (view == ${VIEWS.equirect} || view == ${VIEWS.planet}) light = textureLod(sky, place, 0.0).rgb;
+  if (view == ${VIEWS.planet}) light = textureLod(sky, place, 0.0).rgb;
+  else if (view == ${VIEWS.equirect}) {
+    vec2 turn = vec2(2.0 * PI, PI) * place;
+    light = lookUp(vec3(sin(turn.x) * sin(turn.y), cos(turn.y), -cos(turn.x) * sin(turn.y)));
+  }
   else if (view == ${VIEWS.look}) {
     light = lookUp(normalize(forward + p.x * halfAngle.x * right - p.y * halfAngle.y * up));
   } else if (view == ${VIEWS.cross}) {

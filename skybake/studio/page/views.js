@@ -12,17 +12,17 @@ const KINDS = [
   ["planet", "Planet", "From afar (5)"],
   ["set", "Set", "Grey and mirror ball (6)"],
 ];
-const SHOWN = [["picture", "Picture", "Through the view transform"], ["stops", "False colour", "Stops about middle grey (F)"]];
 const WIDEST = 130;
 const NARROWEST = 4;
 const INSET = [0.34, 250, 1.7];
-const SOUTH = { azimuth: 180, elevation: 12, fov: 75 };
+/** Where one looks at first: the sun at the left, if it is in the south. */
+export const FIRST_LOOK = { azimuth: 212, elevation: 11, fov: 80 };
 
 /** Event: `view` when another kind is chosen or the camera was moved. */
 export class Views extends EventTarget {
-  camera = { ...SOUTH };
+  camera = { ...FIRST_LOOK };
   kind = "look";
-  shown = "picture";
+  isFalse = false;
   hasBalls = true;
   wipe = null;
   #pending = false;
@@ -32,12 +32,11 @@ export class Views extends EventTarget {
     this.renderer = renderer;
     this.canvas = renderer.canvas;
     this.markKind = segments(byId("view-kinds"), KINDS, (kind) => this.choose(kind));
-    this.markShown = segments(byId("show-kinds"), SHOWN, (shown) => this.show(shown));
+    byId("stops").addEventListener("click", () => this.toggleStops());
     byId("balls").addEventListener("click", () => this.toggleBalls());
     byId("legend").replaceChildren(...BANDS.map((colour, index) => legendOf(colour, index - 8)));
     new ResizeObserver(() => this.redraw()).observe(this.canvas);
     this.choose("look");
-    this.show("picture");
   }
 
   /** Kinds of view in order. */
@@ -52,10 +51,11 @@ export class Views extends EventTarget {
     this.changed();
   }
 
-  show(shown) {
-    this.shown = shown;
-    this.markShown(shown);
-    byId("legend").hidden = shown !== "stops";
+  /** Stops about middle grey in the place of the picture, or back. */
+  toggleStops() {
+    this.isFalse = !this.isFalse;
+    byId("stops").setAttribute("aria-pressed", String(this.isFalse));
+    byId("legend").hidden = !this.isFalse;
     this.redraw();
   }
 
@@ -138,8 +138,8 @@ export class Views extends EventTarget {
     const name = isPlanet ? `planet-${slot}` : slot;
     const look = this.looks?.(slot);
     if (!look || !this.renderer.hasSky(name)) return;
-    const { kind, camera, shown } = this;
-    this.renderer.draw(name, { ...look, kind, camera, isFalse: shown === "stops", rectangle, clip });
+    const { kind, camera, isFalse } = this;
+    this.renderer.draw(name, { ...look, kind, camera, isFalse, rectangle, clip });
   }
 
   #inset(width, height) {
@@ -152,7 +152,7 @@ export class Views extends EventTarget {
     const gap = 10 * scale;
     const inner = [width - w - gap, height - h - gap, w, h];
     this.renderer.fill([inner[0] - scale, inner[1] - scale, w + 2 * scale, h + 2 * scale], [0.75, 0.75, 0.75]);
-    this.renderer.draw("now", { ...look, kind: "set", camera: this.camera, isFalse: this.shown === "stops", rectangle: inner });
+    this.renderer.draw("now", { ...look, kind: "set", camera: this.camera, isFalse: this.isFalse, rectangle: inner });
   }
 }
 
