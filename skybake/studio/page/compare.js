@@ -21,7 +21,7 @@ export class Compare {
   keep() {
     const frame = this.live.frames.now;
     if (!frame) return;
-    this.kept = { state: this.store.state, look: this.look("now") };
+    this.kept = { state: this.store.state, look: this.look(false), planetLook: this.look(true) };
     this.views.renderer.setSky("a", frame);
     const planet = this.live.frames["planet-now"];
     if (planet) this.views.renderer.setSky("planet-a", planet);

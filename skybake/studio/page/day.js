@@ -9,6 +9,7 @@ const MARS = { site: "gale", ls: "180", time: "16:30" };
 const STEEPEST = 90;
 const WIDTH = 144;
 const HEIGHT = 92;
+const EVENT = /^([a-z]+(?:-[a-z]+)*)([+-].*)?$/;
 const STEP_BY_KEY = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 6, PageDown: -6 };
 
 /** How the sun is placed: a choice of two, and for times a curve of the day. */
@@ -137,9 +138,8 @@ export class SunPlace {
   #markNow() {
     if (!this.places) return;
     const time = this.store.option("time");
-    const event = this.events.find((one) => one.time === time || one.name === time);
     const exact = this.places.indexOf(time);
-    this.index = exact >= 0 ? exact : indexOf(event?.label ?? time, this.labels);
+    this.index = exact >= 0 ? exact : indexOf(time, this.labels, this.events);
     const isKnown = Number.isFinite(this.index);
     this.now.style.display = isKnown ? "" : "none";
     if (isKnown) {
@@ -153,12 +153,20 @@ export class SunPlace {
   }
 }
 
-/** Place of HH:MM among such labels, between two of them if need be. */
-function indexOf(label, labels) {
-  const minutes = minutesOf(label);
+/** Place of HH:MM, or of an event such as sunset-20min, among labels, or between two of them. */
+function indexOf(text, labels, events = []) {
+  const [, name, offset] = EVENT.exec(text) ?? [];
+  const event = events.find((one) => one.name === name);
+  const minutes = event ? minutesOf(event.label) + minutesIn(offset) : minutesOf(text);
   const first = minutesOf(labels[0]);
   const step = minutesOf(labels[1]) - first;
   return (minutes - first) / step;
+}
+
+function minutesIn(offset) {
+  let sum = 0;
+  for (const [, value, unit] of (offset ?? "").matchAll(/([\d.]+)(h|min|s)/g)) sum += Number(value) * { h: 60, min: 1, s: 1 / 60 }[unit];
+  return offset?.startsWith("-") ? -sum : sum;
 }
 
 function minutesOf(label) {

@@ -12,6 +12,7 @@ export function startKeys(actions) {
     ["Ctrl+Y", null, actions.redo],
     ["Ctrl+Enter", "Bake at full size", actions.bake],
     ...actions.views.map(([title, choose], index) => [String(index + 1), title, choose]),
+    ["L", "Look toward the sun", actions.sun],
     ["F", "False colour in stops", actions.stops],
     ["B", "Balls in the corner", actions.balls],
     ["E", "Exposure as a camera meters, or held", actions.exposure],

@@ -41,7 +41,7 @@ export class Knob {
   show() {
     const given = this.value.get();
     this.element.classList.toggle("changed", given !== undefined);
-    if (document.activeElement !== this.field || !this.hasFault) this.#fill(given);
+    if (!this.isPending && !(this.hasFault && document.activeElement === this.field)) this.#fill(given);
     this.slider?.show(this.#number(given));
   }
 
@@ -155,6 +155,7 @@ export class Knob {
       this.#typed();
     } else if (event.key === "Escape") {
       event.stopPropagation();
+      this.isPending = false;
       this.complain(null);
       this.#fill(this.value.get());
     }
@@ -164,18 +165,20 @@ export class Knob {
     const text = this.field.value.trim();
     const values = this.spec.multiple ? text.split(";").map((one) => one.trim()).filter(Boolean) : [text];
     if (text === "") {
+      this.isPending = false;
       this.#set(undefined);
       return;
     }
-    for (const one of values) {
-      const answer = await this.check(one);
-      if (this.field.value.trim() !== text) return;
-      if (answer.error) {
-        this.complain(answer.error);
-        return;
-      }
-      this.parsed = typeof answer.value === "number" ? answer.value : null;
+    this.isPending = true;
+    const answers = await Promise.all(values.map((one) => this.check(one)));
+    if (this.field.value.trim() !== text) return;
+    this.isPending = false;
+    const fault = answers.find((answer) => answer.error);
+    if (fault) {
+      this.complain(fault.error);
+      return;
     }
+    this.parsed = answers.length === 1 && typeof answers[0].value === "number" ? answers[0].value : null;
     this.#set(this.spec.multiple ? values : text);
   }
 

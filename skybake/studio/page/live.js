@@ -12,6 +12,7 @@ const DETAILS = [512, 1024, 2048, 4096];
 /** Events: `frame` with a picture in `detail`, `command` with its command line. */
 export class Live extends EventTarget {
   frames = {};
+  expected = {};
   detail = 1024;
 
   constructor(client, store, views) {
@@ -36,15 +37,15 @@ export class Live extends EventTarget {
 
   /** Ask for the sky that is set, and for the planet if it is looked at. */
   ask() {
-    this.expected = { [SKY]: this.client.request(SKY, this.store.state, { kind: "equirect", size: [this.detail, this.detail / 2] }) };
     this.asked = null;
+    this.expected[SKY] = this.client.request(SKY, this.store.state, { kind: "equirect", size: [this.detail, this.detail / 2] });
     this.#begin();
     if (this.views.kind === PLANET) this.#askPlanet();
   }
 
   /** Keep the picture that is there. */
   cancel() {
-    for (const tag of Object.keys(this.expected ?? {})) this.client.stop(tag);
+    for (const tag of Object.keys(this.expected)) this.client.stop(tag);
     this.expected = {};
     this.#settled();
     say("Cancelled; the last picture stays");
@@ -52,7 +53,7 @@ export class Live extends EventTarget {
   }
 
   get isBusy() {
-    return Object.keys(this.expected ?? {}).length > 0;
+    return Object.keys(this.expected).length > 0;
   }
 
   #viewed() {
@@ -87,7 +88,7 @@ export class Live extends EventTarget {
       this.dispatchEvent(new CustomEvent("command", { detail: frame.command }));
     }
     if (!frame.final) return;
-    delete this.expected?.[frame.tag];
+    delete this.expected[frame.tag];
     if (!this.isBusy) this.#settled();
   }
 
@@ -112,7 +113,7 @@ export class Live extends EventTarget {
   }
 
   #failed({ tag, error, option }) {
-    delete this.expected?.[tag];
+    delete this.expected[tag];
     this.#settled();
     byId("frame").dataset.state = "fault";
     this.dispatchEvent(new CustomEvent("fault", { detail: { error, option } }));

@@ -19,7 +19,7 @@ import { startPointer } from "./pointer.js";
 import { Renderer } from "./renderer.js";
 import { Store } from "./store.js";
 import { startTheme } from "./theme.js";
-import { Views } from "./views.js";
+import { FIRST_LOOK, Views } from "./views.js";
 
 const THIRD = 1 / 3;
 const LINK_DELAY = 250;
@@ -46,11 +46,12 @@ async function start() {
   const live = new Live(client, store, views);
   const out = new Out(client, store);
   const looks = new Looks(live, exposure, views);
-  const compare = new Compare({ live, store, views, look: (slot) => looks.now(slot) });
-  views.looks = (slot) => (slot === "a" ? compare.kept?.look : looks.now(slot));
+  const compare = new Compare({ live, store, views, look: (isPlanet) => looks.now(isPlanet) });
+  views.looks = (slot, isPlanet) => (slot === "a" ? compare.kept?.[isPlanet ? "planetLook" : "look"] : looks.now(isPlanet));
+  byId("to-sun").addEventListener("click", () => looks.faceSun());
 
   startPointer(views, store, (found) => looks.probe(found));
-  startKeys(actionsOf({ store, views, exposure, compare, gallery, bake, out, live }));
+  startKeys(actionsOf({ store, views, exposure, compare, gallery, bake, out, live, looks }));
   startHistory(store);
   live.addEventListener("frame", ({ detail }) => looks.arrived(detail));
   live.addEventListener("command", ({ detail }) => out.show(detail));
@@ -74,10 +75,17 @@ class Looks {
     document.addEventListener("theme", () => this.show());
   }
 
-  now() {
-    const frame = this.live.frames.now;
+  /** Of the sky, or of the planet from afar, which is metered by itself. */
+  now(isPlanet = false) {
+    const frame = this.live.frames[isPlanet ? "planet-now" : "now"];
     if (!frame) return null;
     return { gain: this.exposure.gain(frame), balance: frame.figures?.white_balance ?? null };
+  }
+
+  /** Turn toward the sun. */
+  faceSun() {
+    const { sun_azimuth_deg: azimuth, sun_elevation_deg: elevation } = this.live.frames.now?.figures ?? {};
+    if (Number.isFinite(azimuth)) this.views.lookAt({ azimuth, elevation: Math.max(FIRST_LOOK.elevation, elevation) });
   }
 
   arrived({ name, frame }) {
@@ -103,13 +111,14 @@ class Looks {
   }
 }
 
-function actionsOf({ store, views, exposure, compare, gallery, bake, out, live }) {
+function actionsOf({ store, views, exposure, compare, gallery, bake, out, live, looks }) {
   const titles = { look: "Look around", equirect: "Equirect map", cross: "Cross of a cube", fisheye: "Fisheye", planet: "Planet from afar", set: "Grey and mirror ball" };
   return {
     undo: () => store.undo(),
     redo: () => store.redo(),
     bake: () => bake.open(),
     views: Views.kinds.map((kind) => [titles[kind], () => views.choose(kind)]),
+    sun: () => looks.faceSun(),
     stops: () => views.toggleStops(),
     balls: () => views.toggleBalls(),
     exposure: () => exposure.toggle(),

@@ -180,6 +180,7 @@ vec3 face(vec2 at, out bool isShown) {
 void main() {
   vec3 light = vec3(0.0);
   bool isShown = true;
+  float cover = 1.0;
   vec2 p = 2.0 * place - 1.0;
   if (view == ${VIEWS.set}) {
     colour = vec4(set(), 1.0);
@@ -197,11 +198,11 @@ void main() {
     light = lookUp(normalize(d));
   } else {
     float away = length(p) * PI / 2.0;
-    isShown = length(p) <= 1.0;
+    cover = 1.0 - smoothstep(1.0 - 2.0 * pixel / PI, 1.0, length(p));
     vec2 level = normalize(p + vec2(1e-9, 0.0)) * sin(away);
     light = lookUp(vec3(-level.x, cos(away), level.y));
   }
-  colour = vec4(isShown ? shown(light) : vec3(0.0), 1.0);
+  colour = vec4(isShown ? cover * shown(light) : vec3(0.0), 1.0);
 }`;
 
 export const FRAGMENT = HEAD + SHOWN + BALLS + MAIN;

@@ -92,8 +92,8 @@ export class Views extends EventTarget {
     this.redraw();
     const { azimuth, elevation, fov } = this.camera;
     const isAimed = this.kind === "look" || this.kind === "set";
-    byId("look").textContent = isAimed ? `${azimuth.toFixed(0)}°, ${elevation.toFixed(0)}°, ${fov.toFixed(0)}° wide` : "";
-    this.canvas.classList.toggle("aimed", isAimed);
+    byId("looking").hidden = !isAimed;
+    byId("look").textContent = `${azimuth.toFixed(0)}°, ${elevation.toFixed(0)}°, ${fov.toFixed(0)}° wide`;
     this.dispatchEvent(new Event("view"));
   }
 
@@ -136,7 +136,7 @@ export class Views extends EventTarget {
   #part(slot, rectangle, clip) {
     const isPlanet = this.kind === "planet";
     const name = isPlanet ? `planet-${slot}` : slot;
-    const look = this.looks?.(slot);
+    const look = this.looks?.(slot, isPlanet);
     if (!look || !this.renderer.hasSky(name)) return;
     const { kind, camera, isFalse } = this;
     this.renderer.draw(name, { ...look, kind, camera, isFalse, rectangle, clip });
