@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -124,8 +125,17 @@ def render(**options: Any) -> None:
     _bake(click.get_current_context(), options, started)
 
 
-def requested_map(context: click.Context) -> RequestedMap:
+def requested_map(
+    context: click.Context, load_world: Callable[[click.Context], Planet] = world_from_options
+) -> RequestedMap:
     """Return the map that the options of a command line ask for.
+
+    Parameters
+    ----------
+    context : click.Context
+        With the options of `render`.
+    load_world : callable, optional
+        Loads the world, which may be known already.
 
     Raises
     ------
@@ -158,7 +168,7 @@ def requested_map(context: click.Context) -> RequestedMap:
 
     from skybake.image.sun_distance import sun_distance
 
-    planet = world_from_options(context)
+    planet = load_world(context)
     check_clouds(context, planet)
     distance = sun_distance(planet, moment, options["sun_distance"])
     moon = moon_from_options(options, planet, moment, distance)

@@ -14,23 +14,29 @@ from skybake.commands.options import choices
 from skybake.commands.options.described import (
     LEFT_OUT,
     described_groups,
+    live_of,
     long_name,
     quantity_of,
 )
 from skybake.commands.options.files import check_within
 from skybake.commands.options.place import day_from_options, place_from_options
 from skybake.commands.options.previews import picture_from_options
-from skybake.commands.options.world import changes_from_options
+from skybake.commands.options.world import changes_from_options, world_from_options
 from skybake.commands.render import render, requested_map
 from skybake.errors import ArgumentError, InputError, SkybakeError
+from skybake.jit.kept import Kept
+from skybake.preset.find import is_path
 from skybake.studio.reader import DayRequest, OptionError, Request
 from skybake.studio.state import State, typed_texts
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from skybake.preset import Planet
+
 _LOOKS = ("preview-ev", "white-balance", "view")
 _OF_DAY = ("preset", "lat", "lon", "site", "ls", "tz", "date", "altitude", "refraction")
+_KEPT_WORLDS = 8
 _VIEW_TITLES = {"aces1": "ACES 1.3", "aces2": "ACES 2.0"}
 
 
@@ -58,6 +64,10 @@ class RenderReader:
             for one in command.params
             if isinstance(one, click.Option) and one.name not in LEFT_OUT
         }
+        self._worlds = _Worlds()
+        self._of_worlds = [
+            name for name, one in self._options.items() if live_of(one.name or "") == "solve"
+        ]
 
     def described(self) -> dict[str, Any]:
         """Return the groups of options and the display transforms."""
@@ -73,7 +83,7 @@ class RenderReader:
         """Read all options together."""
         with self._context(self._arguments(state)) as context:
             options = context.params
-            requested = requested_map(context)
+            requested = requested_map(context, self._worlds.load)
             moment = requested.moment
             return Request(
                 requested.planet,
@@ -117,15 +127,27 @@ class RenderReader:
                 options["altitude"],
             )
 
+    def is_same_world(self, state: State, other: State) -> bool:
+        """Whether two states that are not read yet have the same atmosphere for certain."""
+        return state.changes == other.changes and all(
+            state.options.get(name) == other.options.get(name) for name in self._of_worlds
+        )
+
     def check_preset(self, preset: str) -> None:
         """Refuse a preset of a file that may not be read."""
         self._check_files(State({"preset": preset}))
 
     def _arguments(self, state: State) -> list[str]:
         self._check_files(state)
-        words = [f"--set={key}={text}" for key, text in state.changes.items()]
-        for name, value in state.options.items():
-            words += _words(self._option(name), value)
+        for name in state.options:
+            self._option(name)
+        words = []
+        for one in self._command.params:
+            name = long_name(one)
+            if name in state.options:
+                words += _words(self._option(name), state.options[name])
+            elif name == "set":
+                words += [f"--set={key}={text}" for key, text in state.changes.items()]
         if any(name in state.options for name in _LOOKS):
             words.append("--preview")
         return words
@@ -149,6 +171,24 @@ class RenderReader:
             self._command.make_context(self._command.name, list(arguments)) as context,
         ):
             yield context
+
+
+class _Worlds:
+    """Loads worlds, and keeps the last ones that consist of no user's file: those may change."""
+
+    def __init__(self) -> None:
+        self._kept: Kept[str, Planet] = Kept(_KEPT_WORLDS)
+
+    def load(self, context: click.Context) -> Planet:
+        """Return the world of the options."""
+        preset = context.params["preset"]
+        key = repr((preset, changes_from_options(context)))
+        if self._kept.has(key):
+            return self._kept.get(key, lambda: world_from_options(context))
+        planet = world_from_options(context)
+        if not is_path(preset) and "files" not in planet.recipe:
+            self._kept.put(key, planet)
+        return planet
 
 
 def _value(command: click.Command, option: click.Option, text: str) -> Any:

@@ -69,13 +69,23 @@ def python_text(request: Request, output: str | None = None) -> str:
     changes = request.changes
     if _given(changes):
         planet = f"{python_value(changes)}.load({planet})"
-    file = "" if output is None else f", {python_value(output)}"
-    lines = [f"planet = {planet}", f"settings = {python_value(request.settings)}"]
-    if output is None:
-        file = ", None"
-    extra = "" if not request.attributes else f", attributes={dict(request.attributes)!r}"
-    lines.append(f"baked = skybake.bake(planet{file}, settings{extra})")
-    return "\n".join(["import skybake", "", *lines, "print(baked.files[0])", ""])
+    parts = _given(request.settings)
+    inner = "".join(f"\n    {name}={python_value(one)}," for name, one in parts.items())
+    closing = "\n" if parts else ""
+    arguments = ["planet", python_value(output), "settings"]
+    if request.attributes:
+        arguments.append(f"attributes={python_value(request.attributes)}")
+    return "\n".join(
+        [
+            "import skybake",
+            "",
+            f"planet = {planet}",
+            f"settings = skybake.MapSettings({inner}{closing})",
+            f"baked = skybake.bake({', '.join(arguments)})",
+            "print(baked.files[0])",
+            "",
+        ]
+    )
 
 
 def python_value(value: Any) -> str:

@@ -84,7 +84,7 @@ def exposures(
     Returns
     -------
     dict
-        ``exposure_scale_auto`` of what a camera meters, and ``exposure_scale`` of what is asked for.
+        ``exposure_scale_auto`` as a camera meters, and ``exposure_scale`` as it is asked for.
     """
     metered = figures["ev_auto"]
     ev = metered if picture.fixed_ev is None else picture.fixed_ev

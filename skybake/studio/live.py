@@ -99,7 +99,8 @@ class Live:
         if overtaken is not None:
             self.tell({"id": overtaken.number, "cancelled": True})
         self._waiting[tag] = view
-        running.supersede()
+        is_same = self._reader.is_same_world(running.state, view.state)
+        running.supersede(has_same_world=is_same)
 
     def _start(self, tag: str, view: ViewRequest) -> None:
         self._running[tag] = view

@@ -108,5 +108,8 @@ class Reader(Protocol):
     def day(self, texts: Mapping[str, str]) -> DayRequest:
         """Read the options of a day: where, when, and by which clock."""
 
+    def is_same_world(self, state: State, other: State) -> bool:
+        """Whether two states that are not read yet have the same atmosphere for certain."""
+
     def check_preset(self, preset: str) -> None:
         """Refuse a preset of a file that may not be read."""

@@ -18,6 +18,9 @@ from skybake.studio.reader import Request
 KEPT_SCENES = 4
 KEPT_SUNS = 4
 
+SOLVING, TRACING, CLOUDS = "solving atmosphere", "tracing light", "solving clouds"
+"""Stages that take long."""
+
 FAR = 3.0
 """Altitude from which all of a planet is seen, in its radii."""
 
@@ -80,14 +83,18 @@ def planet_settings(request: Request, size: tuple[int, int]) -> MapSettings:
 
 def prepare(scene: Scene, stage: Stage) -> None:
     """Compute what pixels are made of, and say what takes long."""
+    is_far = scene.settings.view.altitude > scene.planet.atmosphere_top
     if not scene.sky.is_solved:
-        stage("solving atmosphere", None)
-    _ = scene.sky.atmosphere
-    scene.workers.check()
+        stage(SOLVING, None)
+        _ = scene.sky.atmosphere
+        stage(TRACING, None)
+    elif is_far:
+        # The terminator needs many rays.
+        stage(TRACING, None)
     _ = scene.table
     scene.workers.check()
     if scene.planet.clouds:
-        stage("solving clouds", None)
+        stage(CLOUDS, None)
         scene.light_clouds()
         scene.workers.check()
 

@@ -15,7 +15,7 @@ from skybake.projection import Equirect, Projection
 from skybake.studio.figures import exposures, figures_of
 from skybake.studio.frames import LARGEST_WIDTH, halves, message, refinements
 from skybake.studio.reader import OptionError, Reader, Request
-from skybake.studio.scenes import Scenes, equirect_settings, planet_settings, prepare
+from skybake.studio.scenes import SOLVING, Scenes, equirect_settings, planet_settings, prepare
 from skybake.studio.state import State, state_from_json
 
 Send = Callable[[dict[str, Any] | bytes], None]
@@ -46,6 +46,8 @@ class ViewRequest:
     is_slow : bool
         Whether it is at work that takes long, or already refines: a newer request then stops it,
         and else waits for the coarse picture, so that a picture follows a moving knob.
+    is_solving : bool
+        Whether that work is the atmosphere, which a newer request may need as well.
     """
 
     number: int
@@ -55,11 +57,12 @@ class ViewRequest:
     cancel: Event = field(default_factory=Event)
     superseded: Event = field(default_factory=Event)
     is_slow: bool = False
+    is_solving: bool = False
 
-    def supersede(self) -> None:
+    def supersede(self, *, has_same_world: bool) -> None:
         """Give way to a newer request as soon as that serves it."""
         self.superseded.set()
-        if self.is_slow:
+        if self.is_slow and not (self.is_solving and has_same_world):
             self.cancel.set()
 
     def enter_slow(self) -> None:
@@ -120,6 +123,7 @@ def _answer(view: ViewRequest, reader: Reader, scenes: Scenes, send: Send) -> No
 
     def stage(name: str, share: float | None) -> None:
         view.enter_slow()
+        view.is_solving = name == SOLVING
         send({"id": view.number, "stage": name, "progress": share})
 
     prepare(scene, stage)
