@@ -9,6 +9,7 @@ const MARS = { site: "gale", ls: "180", time: "16:30" };
 const STEEPEST = 90;
 const WIDTH = 144;
 const HEIGHT = 92;
+const OFFERED = ["sunrise", "noon", "sunset", "civil-dusk", "nautical-dusk"];
 const EVENT = /^([a-z]+(?:-[a-z]+)*)([+-].*)?$/;
 const STEP_BY_KEY = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 6, PageDown: -6 };
 
@@ -104,7 +105,7 @@ export class SunPlace {
     picture.addEventListener("keydown", (event) => this.#key(event));
     this.picture = picture;
     this.text = make("output", {});
-    const buttons = events.map((event) =>
+    const buttons = events.filter((event) => OFFERED.includes(event.name)).map((event) =>
       make("button", { type: "button", onclick: () => this.#set(event.time) }, `${event.name.replaceAll("-", " ")} ${event.label ?? event.time}`));
     this.day.replaceChildren(picture, this.text, make("div", { class: "events" }, ...buttons));
     this.events = events;

@@ -30,13 +30,14 @@ export class Gallery {
     this.shown = name;
     const preset = this.presets.find((one) => one.name === name);
     byId("world-title").textContent = preset?.title ?? name;
+    byId("world-summary").textContent = preset?.summary || "a world of your own";
     byId("world-picture").hidden = !preset;
     if (preset) byId("world-picture").src = this.client.address(preset.picture);
   }
 
   #item(preset) {
     const picture = make("img", { alt: "", loading: "lazy", src: this.client.address(preset.picture), width: 240, height: 120 });
-    const lines = [make("span", {}, preset.title), make("small", {}, preset.summary || preset.name)];
+    const lines = [make("span", {}, sentence(preset.summary) || preset.title), make("small", {}, `${preset.title} · ${preset.name}`)];
     const button = make("button", { type: "button", "data-preset": preset.name, onclick: () => this.#choose(preset) }, picture, ...lines);
     return { preset, button, element: make("li", {}, button) };
   }
@@ -56,6 +57,10 @@ export class Gallery {
       element.hidden = ![preset.name, preset.title, preset.summary].join(" ").toLowerCase().includes(word);
     }
   }
+}
+
+function sentence(words) {
+  return words ? words.charAt(0).toUpperCase() + words.slice(1) : "";
 }
 
 function isMars(name) {

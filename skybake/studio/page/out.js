@@ -34,6 +34,7 @@ export class Out {
   }
 
   async open() {
+    byId("out-texts").replaceChildren(make("p", { class: "quiet" }, "Writing…"));
     byId("out").showModal();
     try {
       const texts = await this.client.post("/api/command", { state: this.store.state });
