@@ -96,7 +96,7 @@ export class Knob {
 
   #fill(given) {
     if (this.field.type === "checkbox") this.field.checked = Boolean(given);
-    else this.field.value = given === undefined ? "" : Array.isArray(given) ? given.join("; ") : String(given);
+    else this.field.value = textOf(given);
   }
 
   #slider() {
@@ -163,6 +163,8 @@ export class Knob {
 
   async #typed() {
     const text = this.field.value.trim();
+    // A field that is left says once more what Enter has said.
+    if (text === textOf(this.value.get()) && !this.hasFault) return;
     const values = this.spec.multiple ? text.split(";").map((one) => one.trim()).filter(Boolean) : [text];
     if (text === "") {
       this.isPending = false;
@@ -195,6 +197,11 @@ export class Knob {
     };
     return make("button", { type: "button", class: "icon", "aria-expanded": "false", "aria-controls": this.help.id, "aria-label": `About ${this.spec.name}`, onclick: toggle }, "?");
   }
+}
+
+function textOf(given) {
+  if (given === undefined) return "";
+  return Array.isArray(given) ? given.join("; ") : String(given);
 }
 
 /** Name of an option as a label. */
