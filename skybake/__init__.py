@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from skybake.baking.convert import Converted, convert
     from skybake.baking.orientation_chart import bake_orientation_chart
     from skybake.colour.space import ColourSpace
+    from skybake.commands.in_notebook import StudioFrame, studio
     from skybake.environment.environment import Environment
     from skybake.environment.load import load_environment
     from skybake.environment.resample import resample
@@ -154,6 +155,7 @@ __all__ = [
     "SkybakeError",
     "Spectrum",
     "Star",
+    "StudioFrame",
     "TableSettings",
     "TabulatedPhase",
     "TabulatedProfile",
@@ -180,6 +182,7 @@ __all__ = [
     "plan_sequence",
     "preset_names",
     "resample",
+    "studio",
     "sun_at",
 ]
 
@@ -247,6 +250,7 @@ _HOMES = {
     "SkybakeError": "skybake.errors",
     "Spectrum": "skybake.preset",
     "Star": "skybake.preset",
+    "StudioFrame": "skybake.commands.in_notebook",
     "TableSettings": "skybake.luts.settings",
     "TabulatedPhase": "skybake.preset",
     "TabulatedProfile": "skybake.preset",
@@ -273,6 +277,7 @@ _HOMES = {
     "plan_sequence": "skybake.sequence.planning",
     "preset_names": "skybake.preset",
     "resample": "skybake.environment.resample",
+    "studio": "skybake.studio",
     "sun_at": "skybake.ephemeris.moment",
 }
 

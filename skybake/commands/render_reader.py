@@ -21,6 +21,7 @@ from skybake.commands.options.described import (
 from skybake.commands.options.files import check_within
 from skybake.commands.options.place import day_from_options, place_from_options
 from skybake.commands.options.previews import picture_from_options
+from skybake.commands.options.times import moment_from_options
 from skybake.commands.options.world import changes_from_options, world_from_options
 from skybake.commands.render import render, requested_map
 from skybake.errors import ArgumentError, InputError, SkybakeError
@@ -116,6 +117,8 @@ class RenderReader:
         if "date" not in state.options and "ls" not in state.options:
             arguments.append("--date=today")
         with self._context(arguments) as context:
+            # Finds what is wrong with the place or the day, in the words of the options.
+            moment_from_options(context)
             place = place_from_options(context, "--time")
             options = context.params
             return DayRequest(

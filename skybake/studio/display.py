@@ -9,8 +9,8 @@ from skybake.errors import InputError
 from skybake.formats.preview import VIEWS, check_view, display_values
 from skybake.studio.frames import message
 
-SIZE = 48
-LEAST_EV, MOST_EV = -12.0, 10.0
+SIZE = 64
+LEAST_EV, MOST_EV = -10.0, 8.0
 """Stops from middle grey that the table covers; beyond, displays show black and white."""
 
 MIDDLE = 0.18

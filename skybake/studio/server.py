@@ -77,6 +77,9 @@ class Studio:
                 option = error.option if isinstance(error, OptionError) else None
                 answer = {"error": str(error), "option": option}
                 return web.json_response(answer, status=400, headers=headers)
+            except Exception as error:  # noqa: BLE001 - the page is told, the server goes on
+                answer = {"error": f"studio: failed unexpectedly ({error!r})"}
+                return web.json_response(answer, status=500, headers=headers)
 
         async def add_headers(_: web.Request, response: web.StreamResponse) -> None:
             response.headers.update(headers)
@@ -198,6 +201,6 @@ async def _json(request: web.Request) -> Mapping[str, Any]:
 
 def _output(data: Mapping[str, Any]) -> str | None:
     output = data.get("output")
-    if output is not None and not isinstance(output, str):
-        raise InputError(f"output: must be a text, got {output!r}")
+    if output is not None and (not isinstance(output, str) or "\0" in output):
+        raise InputError(f"output: must be the name of a file, got {output!r}")
     return output or None

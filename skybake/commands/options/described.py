@@ -30,7 +30,10 @@ _GROUPS: dict[str, tuple[str, ...]] = {
         *("target", "projection", "size", "fov", "look", "cube_layout", "cube_space"),
         *("face_names", "equirect_rows", "rotate"),
     ),
-    "File": ("colorspace", "units", "ev", "pixel", "compression"),
+    "File": (
+        *("colorspace", "units", "ev", "pixel", "compression", "mips", "layers"),
+        *("clamp_negative", "omit_exposure"),
+    ),
 }
 OTHER = "Other"
 """Group of the options that are in none of the others."""
