@@ -75,6 +75,7 @@ def build_cloudscape(
     time: float = 0.0,
     quality: str = "normal",
     workers: Workers,
+    keeps_light: bool = False,
 ) -> Cloudscape | None:
     """Build what an observer sees of a world's clouds.
 
@@ -92,6 +93,8 @@ def build_cloudscape(
         How finely their light is resolved.
     workers : Workers
         Threads that do the work.
+    keeps_light : bool, optional
+        Whether light that is solved for is kept on disk, for other processes.
 
     Returns
     -------
@@ -111,7 +114,8 @@ def build_cloudscape(
     layers = [_layer(layer, field, sky, weights, chosen, workers) for layer, field in fields]
     air = ClearAir(sky.atmosphere, sky.source.angular_radius, workers, sky.table_method)
     sun = sun_vector(sky.sun_azimuth, sky.sun_elevation)
-    return Cloudscape(layers, air, sky.altitude, sun, weights, chosen.depth, workers)
+    given = layers, air, sky.altitude, sun, weights, chosen.depth, workers
+    return Cloudscape(*given, keeps_light=keeps_light)
 
 
 def _layer(

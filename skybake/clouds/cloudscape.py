@@ -22,6 +22,7 @@ from skybake.clouds.compose import compose
 from skybake.clouds.dimming import Dimming, dimming_by
 from skybake.clouds.directions import fill_places, node_directions, unit_vectors
 from skybake.clouds.footprint import rays_per_side, see_pixels
+from skybake.clouds.kept_light import kept_light, light_key
 from skybake.clouds.layer import (
     SolvedLayer,
     Surroundings,
@@ -77,6 +78,8 @@ class Cloudscape:
         Optical depth of a step of the eye's rays.
     workers : Workers
         Threads that do the work.
+    keeps_light : bool, optional
+        Whether light is kept on disk.
     """
 
     def __init__(
@@ -88,6 +91,8 @@ class Cloudscape:
         weights: Array,
         depth: float,
         workers: Workers,
+        *,
+        keeps_light: bool = False,
     ) -> None:
         self.layers = sorted(layers, key=lambda each: -each.grid.top)
         self.air = air
@@ -97,10 +102,18 @@ class Cloudscape:
         self.weights = weights
         self.depth = depth
         self.workers = workers
+        self._keeps_light = keeps_light
 
     @cached_property
     def solved(self) -> list[SolvedLayer]:
-        """The light of each layer, from the highest down.
+        """The light of each layer, from the highest down."""
+        if not self._keeps_light:
+            return self._solve()
+        key = light_key(self.layers, self.air, self.altitude, self.sun, self.weights)
+        return kept_light(key, self._solve)
+
+    def _solve(self) -> list[SolvedLayer]:
+        """Solve for the light of each layer.
 
         A layer is lit by what those above leave on average, and stands over what those below
         reflect.

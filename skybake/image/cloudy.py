@@ -27,13 +27,15 @@ class CloudsOver:
     Parameters
     ----------
     cloudscape : Cloudscape
-        The clouds; its channels are XYZ, in the scale of pixel values.
+        The clouds; its channels are XYZ. [cd m⁻²]
     clear : callable
         The clear sky's pixels at zenith angles and azimuths, with their footprints.
     sun_azimuth : float
         Compass bearing from which azimuths count. [rad]
     space : ColourSpace
         Of the pixels.
+    white_luminance : float
+        Of pixels of 1. [cd m⁻²]
     """
 
     def __init__(
@@ -42,11 +44,12 @@ class CloudsOver:
         clear: Callable[[Array, Array, Array], np.ndarray],
         sun_azimuth: float,
         space: ColourSpace,
+        white_luminance: float,
     ) -> None:
         self._cloudscape = cloudscape
         self._clear = clear
         self._sun_azimuth = sun_azimuth
-        to_rgb = rgb_from_xyz(space)
+        to_rgb = rgb_from_xyz(space) / white_luminance
         # In XYZ no light is negative, as ratios need.
         self._to_rgb = to_rgb.T.astype(np.float32)
         self._to_xyz = np.linalg.inv(to_rgb).T.astype(np.float32)

@@ -18,7 +18,7 @@ class BlurredClouds:
 
 
 def test_details_that_are_left_out_are_those_of_each_pixel():
-    clouds = CloudsOver(BlurredClouds(), None, 0.0, COLOUR_SPACES["lin_rec709"])
+    clouds = CloudsOver(BlurredClouds(), None, 0.0, COLOUR_SPACES["lin_rec709"], 1.0)
     footprint = np.geomspace(1e-3, 4e-3, 12).reshape(4, 3)
     zenith, azimuth = np.full((4, 3), 0.5), np.zeros((4, 3))
     pixels = np.ones((4, 3, 3), np.float32)
