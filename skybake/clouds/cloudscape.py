@@ -76,6 +76,8 @@ class Cloudscape:
         See `solve_layer`.
     depth : float
         Optical depth of a step of the eye's rays.
+    alike : float
+        As the tolerance of `skybake.clouds.rows.see_rows`.
     workers : Workers
         Threads that do the work.
     keeps_light : bool, optional
@@ -90,6 +92,7 @@ class Cloudscape:
         sun: Array,
         weights: Array,
         depth: float,
+        alike: float,
         workers: Workers,
         *,
         keeps_light: bool = False,
@@ -101,6 +104,7 @@ class Cloudscape:
         self.sun = sun
         self.weights = weights
         self.depth = depth
+        self.alike = alike
         self.workers = workers
         self._keeps_light = keeps_light
 
@@ -195,6 +199,13 @@ class Cloudscape:
     def see(self, directions: Array, pixel: float) -> tuple[Floats, Floats]:
         """Follow rays through every layer, see `fill_march`.
 
+        Parameters
+        ----------
+        directions : ndarray of float64, shape (ray, 3)
+            Unit vectors.
+        pixel : float
+            Angle below which nothing needs to be resolved. [rad]
+
         Returns
         -------
         seen : ndarray of float32, shape (layer, ray, channel)
@@ -272,7 +283,7 @@ class Cloudscape:
         return self.air.atmosphere.medium.r_top
 
     def put_into(
-        self, total: Floats, zenith: Array, bearing: Array, pixel: float
+        self, total: Floats, zenith: Array, bearing: Array, seen: Floats, passing: Floats
     ) -> tuple[Floats, Floats]:
         """Put clouds into the light of a clear sky.
 
@@ -282,8 +293,8 @@ class Cloudscape:
             Radiance without clouds.
         zenith, bearing : ndarray of float64, shape (ray,)
             Directions. [rad]
-        pixel : float
-            Angle below which nothing needs to be resolved. [rad]
+        seen, passing : ndarray of float32
+            What is seen of clouds there, see `see`.
 
         Returns
         -------
@@ -292,8 +303,6 @@ class Cloudscape:
             Share of what is behind that clouds hide.
         """
         lit, through, distance = self.nodes
-        directions = unit_vectors(zenith, bearing)
-        seen, passing = self.see(directions, pixel)
         row, weight = np.empty((zenith.size, 4), np.int64), np.empty((zenith.size, 4))
         out = np.empty_like(total)
         opacity = np.empty(zenith.size, np.float32)

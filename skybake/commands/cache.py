@@ -50,7 +50,8 @@ def info(as_json: bool) -> None:
             f"{usage.kernel_bytes / _MEGABYTE:.1f} MB, {usage.atmospheres} atmospheres "
             f"{usage.atmosphere_bytes / _MEGABYTE:.1f} MB, {usage.cloud_tiles} tiles of clouds "
             f"{usage.cloud_tile_bytes / _MEGABYTE:.1f} MB, "
-            f"light of {usage.cloud_lights} skies with clouds {usage.cloud_light_bytes / _MEGABYTE:.1f} MB"
+            f"light of {usage.cloud_lights} skies with clouds "
+            f"{usage.cloud_light_bytes / _MEGABYTE:.1f} MB"
         )
 
 
