@@ -104,21 +104,30 @@ def cloud_place(field, radius, x, y, z, altitude, blur):
         Distance on the plane within which no other patch has clouds. [km]
     """
     x, y = plane_place(field, radius, x, y, z)
-    east, north, room = lone_patch(field, x, y)
+    around = shares_around(field, x, y)
+    east, north, room = lone_patch(field, around)
     if room > 0.0:
         return x + east, y + north, 0.0, room
-    return shared_place(field, x, y, altitude, blur, surface_detail(field, blur))
+    return shared_place(field, around, x, y, altitude, blur, surface_detail(field, blur))
 
 
 @kernel
-def lone_patch(field, x, y):
-    """Shift of the tile at a place of the plane, and the distance within which it is the same.
+def shares_around(field, x, y):
+    """Return what `patches_around` does; a tile that repeats to all sides has a single patch."""
+    if field.patch == 0.0:
+        return 0, 0, 1.0, 0, 0, 0.0, 0, 0, 0.0
+    return patches_around(field, x, y)
 
-    The distance is 0 where several patches may have clouds. [km]
+
+@kernel
+def lone_patch(field, around):
+    """Shift of the tile in the midst of some patches, and the distance within which it is the same.
+
+    The distance is 0 where several of them may have clouds; they are those of `shares_around`. [km]
     """
     if field.patch == 0.0:
         return 0.0, 0.0, math.inf
-    ai, aj, a, bi, bj, b, ci, cj, c = patches_around(field, x, y)
+    ai, aj, a, bi, bj, b, ci, cj, c = around
     if b > a:
         ai, aj, a, bi, bj, b = bi, bj, b, ai, aj, a
     if c > a:
@@ -131,9 +140,9 @@ def lone_patch(field, x, y):
 
 
 @kernel
-def shared_place(field, x, y, altitude, blur, detail):
+def shared_place(field, around, x, y, altitude, blur, detail):
     """Do what `cloud_place` does, at a place of the plane where several patches may have clouds."""
-    ai, aj, a, bi, bj, b, ci, cj, c = patches_around(field, x, y)
+    ai, aj, a, bi, bj, b, ci, cj, c = around
     most = max(a, b, c)
     # Beyond the three there are others, whose shares are 0 here.
     room = room_within(field, 0.0, most)

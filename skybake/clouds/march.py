@@ -8,8 +8,14 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from skybake.cloud_fields.chart import chart_stretch, lone_patch, plane_place, shared_place
-from skybake.cloud_fields.field import detail_at, detailed_clearance, detailed_extinction
+from skybake.cloud_fields.chart import (
+    chart_stretch,
+    lone_patch,
+    plane_place,
+    shared_place,
+    shares_around,
+)
+from skybake.cloud_fields.field import detail_at, detailed_around, detailed_clearance
 from skybake.clouds.particles import TERMS
 from skybake.clouds.source import fill_source, prepare_ray
 from skybake.jit.kernel import kernel
@@ -149,6 +155,7 @@ def fill_march(
         stretch = chart_stretch(field, radius, far[0], far[1], far[2])
         # Up to where the tile lies as it does here.
         alone = east = north = 0.0
+        around = 0, 0, 1.0, 0, 0, 0.0, 0, 0, 0.0
         passes, depth = 1.0, 0.0
         weighted = total = due = 0.0
         share, is_new = 1.0, True
@@ -169,12 +176,13 @@ def fill_march(
             if blur > SIMILAR * known:
                 known, detail = blur, detail_at(field, blur)
             if middle >= alone:
-                east, north, room = lone_patch(field, x, y)
+                around = shares_around(field, x, y)
+                east, north, room = lone_patch(field, around)
                 alone = middle + room / stretch
             if middle < alone:
                 x, y, erosion, room = x + east, y + north, 0.0, alone - middle
             else:
-                x, y, erosion, room = shared_place(field, x, y, h, blur, detail)
+                x, y, erosion, room = shared_place(field, around, x, y, h, blur, detail)
                 room /= stretch
             shortest = marching.shortest + min(blur, coarsest)
             clear = min(detailed_clearance(field, x, y, h, blur, detail) / stretch, room)
@@ -184,9 +192,9 @@ def fill_march(
                 at = max(middle + clear, at + shortest)
                 step = shortest
                 continue
-            extinction = detailed_extinction(field, x, y, h, detail, erosion)
+            extinction, free = detailed_around(field, x, y, h, detail, erosion)
             if extinction < THINNEST:
-                at += step
+                at = max(middle + min(free / stretch, room), at + step)
                 step = shortest
                 continue
             scaled = extinction * keep
