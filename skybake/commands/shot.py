@@ -21,6 +21,11 @@ from skybake.commands.options.camera import (
 )
 from skybake.commands.options.clouds import check_clouds, clouds_options
 from skybake.commands.options.maps import given_settings, map_options
+from skybake.commands.options.moonlight import (
+    moonlight_from_options,
+    moonlight_needs,
+    moonlight_options,
+)
 from skybake.commands.options.night import (
     lst_option,
     night_from_options,
@@ -66,6 +71,7 @@ _STORED = (
 @moment_options
 @sun_distance_option()
 @moon_options("--time")
+@moonlight_options
 @altitude_option()
 @night_options
 @lst_option
@@ -139,6 +145,7 @@ def shot(**options: Any) -> None:
         sun_distance_needs(options, is_timed=is_timed, time="--time"),
         moon_needs(options, is_timed=is_timed, time="--time"),
         night_needs(options, is_timed=is_timed, time="--time"),
+        moonlight_needs(options, is_timed=is_timed, time="--time"),
         _needs(options),
     )
     moment = moment_from_options(context)
@@ -158,6 +165,7 @@ def shot(**options: Any) -> None:
             **given_settings(options),
             **where,
             night=night_from_options(options, moment),
+            moonlight=moonlight_from_options(options, moment, where),
         )
     except InputError as error:
         raise click.UsageError(f"--{error}") from error

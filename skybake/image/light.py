@@ -93,6 +93,15 @@ def star_attributes(scene: Scene) -> dict[str, float]:
     return {STAR_ILLUMINANCE: star_illuminance(scene, scene.stars)}
 
 
+def moon_attributes(scene: Scene) -> dict[str, Attribute]:
+    """Return the attributes of a map's files that tell of its Moon, none without one."""
+    if scene.moonlit is None:
+        return {}
+    from skybake.image.moon_light import moon_light
+
+    return moon_light(scene, scene.moonlit).attributes()
+
+
 def light_from_attributes(attributes: Mapping[str, Any]) -> Light:
     """Return the light that the attributes of a map's file state.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from skybake.image.scene import Scene
 from skybake.image.settings import Lighting, MapSettings
 from skybake.optics.spectrum import star_at
 from skybake.preset import Planet
+
+if TYPE_CHECKING:
+    from skybake.image.moon_light import MoonLight
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,6 +58,8 @@ class MapLight(Light):
         Correlated colour temperature, see `correlated_temperature`. [K]
     exposure_ev : float
         Exposure value at ISO 100 that a camera would choose for the sky.
+    moon : MoonLight or None
+        Of a map with a Moon.
     """
 
     preset: str
@@ -72,6 +78,7 @@ class MapLight(Light):
     sun_colour_in_map: Triple
     sun_temperature: float | None
     exposure_ev: float
+    moon: MoonLight | None = None
 
     @property
     def sun_is_in_map(self) -> bool:
@@ -121,7 +128,16 @@ def map_light(scene: Scene, light: Light | None = None) -> MapLight:
         sun_colour_in_map=_colour(scene, normal),
         sun_temperature=correlated_temperature(normal),
         exposure_ev=scene_ev(scene),
+        moon=_moon(scene),
     )
+
+
+def _moon(scene: Scene) -> MoonLight | None:
+    if scene.moonlit is None:
+        return None
+    from skybake.image.moon_light import moon_light
+
+    return moon_light(scene, scene.moonlit)
 
 
 def holds_sun(sun_disc: str) -> bool:
