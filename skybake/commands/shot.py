@@ -53,6 +53,7 @@ from skybake.commands.printing.progress import map_progress
 from skybake.errors import InputError
 
 if TYPE_CHECKING:
+    from skybake.ephemeris.lit_moon import LitMoon
     from skybake.preset import Planet
     from skybake.projection import Perspective
 
@@ -158,14 +159,15 @@ def shot(**options: Any) -> None:
 
     planet = world_from_options(context)
     check_clouds(context, planet)
-    projection = _projection(options, planet, where)
+    moonlight = moonlight_from_options(options, moment, where)
+    projection = _projection(options, planet, where, moonlight.moon)
     try:
         settings = image_settings.map_settings(
             projection,
             **given_settings(options),
             **where,
             night=night_from_options(options, moment),
-            moonlight=moonlight_from_options(options, moment, where),
+            moonlight=moonlight,
         )
     except InputError as error:
         raise click.UsageError(f"--{error}") from error
@@ -226,7 +228,9 @@ def _needs(options: Mapping[str, Any]) -> Needs:
     }
 
 
-def _projection(options: Mapping[str, Any], planet: Planet, where: dict[str, Any]) -> Perspective:
+def _projection(
+    options: Mapping[str, Any], planet: Planet, where: dict[str, Any], moon: LitMoon | None
+) -> Perspective:
     """Return what the camera sees; a height of its own is added to the altitude in `where`."""
     from skybake.image.aim import Aim, Lookout, aimed
 
@@ -239,7 +243,7 @@ def _projection(options: Mapping[str, Any], planet: Planet, where: dict[str, Any
         name, azimuth, elevation = options["look"] or ("horizon", None, 0.0)
         return aimed(
             Aim(name, azimuth, elevation),
-            Lookout(planet, where["altitude"], where["sun_azimuth"], where["sun_elevation"]),
+            Lookout(planet, where["altitude"], where["sun_azimuth"], where["sun_elevation"], moon),
             size or SIZE,
             fov=options["fov"],
             roll=options["roll"] or 0.0,

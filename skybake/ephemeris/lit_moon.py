@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from datetime import datetime
 
 from skybake.ephemeris.moon import MEAN_DISTANCE, MEAN_RADIUS
 from skybake.errors import InputError
@@ -14,9 +13,6 @@ Vector = tuple[float, float, float]
 
 NEAREST, FARTHEST = 2.0 * MEAN_RADIUS, 1e7
 """Distances from which it is seen. [km]"""
-
-FIRST_YEAR, LAST_YEAR = 1, 3000
-"""Years for which libastro knows the Moon."""
 
 PHASES = {"full": 0.0, "gibbous": 45.0, "quarter": 90.0, "crescent": 135.0, "new": 180.0}
 """Phase angles by name. [deg]"""
@@ -120,26 +116,6 @@ class LitMoon:
             "moonlight_sun_distance_au": self.sun_distance,
             "moonlight_earth_km": None if self.earth is None else _rounded(self.earth),
         }
-
-
-def is_known(time: datetime) -> bool:
-    """Whether the Moon's place is known at a time."""
-    return FIRST_YEAR <= time.year <= LAST_YEAR
-
-
-def check_year(time: datetime) -> None:
-    """Refuse a year in which the Moon's place is not known.
-
-    Raises
-    ------
-    InputError
-        That says which years are.
-    """
-    if not is_known(time):
-        raise InputError(
-            f"moon: year must be from {FIRST_YEAR} to {LAST_YEAR}, where its path is known, or the "
-            f"Moon be excluded, got {time.year}"
-        )
 
 
 def moon_by_hand(

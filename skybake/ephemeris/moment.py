@@ -51,7 +51,7 @@ class Moment:
     celestial : CelestialFrame or None
         How the stars stand.
     lit_moon : LitMoon or None
-        The Moon as a light, on Earth in the years of `skybake.ephemeris.moonlight`.
+        The Moon as a light, on Earth.
     """
 
     time: datetime | None
@@ -245,7 +245,7 @@ def _moon(time: datetime, place: Place, horizon: Horizon, elevation: float, azim
     return moon_before_sun(time, place, horizon.altitude, azimuth, elevation)
 
 
-def _lit_moon(time: datetime, place: Place, horizon: Horizon) -> LitMoon | None:
+def _lit_moon(time: datetime, place: Place, horizon: Horizon) -> LitMoon:
     # As of `_moon`.
     from skybake.ephemeris.moonlight import lit_moon_at
 

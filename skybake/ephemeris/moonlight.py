@@ -12,7 +12,7 @@ import numpy.typing as npt
 from skybake.constants import ASTRONOMICAL_UNIT
 from skybake.ephemeris.earth import J2000_DAYS, ephem_days, sidereal_time
 from skybake.ephemeris.earth_moon import observer_on_ellipsoid, sun_and_moon
-from skybake.ephemeris.lit_moon import LitMoon, Vector, is_known
+from skybake.ephemeris.lit_moon import LitMoon, Vector
 from skybake.ephemeris.place import Place
 from skybake.ephemeris.topocentric import east_north_up, turn
 
@@ -29,8 +29,8 @@ def lit_moon_at(
     place: Place,
     altitude: float,
     lift: Callable[[float], float] | None = None,
-) -> LitMoon | None:
-    """Return the Moon at a time, or None for a year in which its place is not known.
+) -> LitMoon:
+    """Return the Moon at a time.
 
     Parameters
     ----------
@@ -53,8 +53,6 @@ def lit_moon_at(
     By libastro, and axes by Cassini's laws (Meeus 1998, ch. 53), without physical libration: the
     middle of the disc is right to 0.05 deg.
     """
-    if not is_known(time):
-        return None
     sun, moon = sun_and_moon(time, place, altitude)
     sidereal, days = sidereal_time(time, place), ephem_days(time) - J2000_DAYS
     pole, meridian = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from skybake.ephemeris.lit_moon import LitMoon, check_year
+from skybake.ephemeris.lit_moon import LitMoon
 from skybake.errors import InputError
 
 if TYPE_CHECKING:
@@ -47,13 +47,5 @@ class Moonlight:
 
 
 def moonlight_at(moonlight: Moonlight, moment: Moment) -> Moonlight:
-    """Return the moonlight of a moment.
-
-    Raises
-    ------
-    InputError
-        If the Moon is wanted in a year for which its place is not known.
-    """
-    if moonlight.shown != "exclude" and moment.place.planet == "earth" and moment.time is not None:
-        check_year(moment.time)
+    """Return the moonlight as a moment has it."""
     return replace(moonlight, moon=moment.lit_moon)

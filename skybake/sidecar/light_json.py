@@ -5,20 +5,18 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from skybake.image.moon_figures import MoonFigures
 from skybake.sidecar.map_light import MapLight
 from skybake.units import degrees
 from skybake.version import __version__
-
-if TYPE_CHECKING:
-    from skybake.image.moon_light import MoonLight
 
 SCHEMA = 1
 """Incremented when a key changes its meaning or is removed."""
 
 
-def moon_document(moon: MoonLight) -> dict[str, Any]:
+def moon_document(moon: MoonFigures) -> dict[str, Any]:
     """Return the light of a Moon, fit for JSON."""
     return {
         "is_in_map": moon.is_in_map,

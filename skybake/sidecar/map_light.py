@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,13 +11,11 @@ from skybake.colour.temperature import correlated_temperature
 from skybake.constants import ASTRONOMICAL_UNIT
 from skybake.image.light import Light, Triple, light_of_scene
 from skybake.image.meter import scene_ev
+from skybake.image.moon_figures import MoonFigures, moon_figures
 from skybake.image.scene import Scene
 from skybake.image.settings import Lighting, MapSettings
 from skybake.optics.spectrum import star_at
 from skybake.preset import Planet
-
-if TYPE_CHECKING:
-    from skybake.image.moon_light import MoonLight
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,7 +55,7 @@ class MapLight(Light):
         Correlated colour temperature, see `correlated_temperature`. [K]
     exposure_ev : float
         Exposure value at ISO 100 that a camera would choose for the sky.
-    moon : MoonLight or None
+    moon : MoonFigures or None
         Of a map with a Moon.
     """
 
@@ -78,7 +75,7 @@ class MapLight(Light):
     sun_colour_in_map: Triple
     sun_temperature: float | None
     exposure_ev: float
-    moon: MoonLight | None = None
+    moon: MoonFigures | None = None
 
     @property
     def sun_is_in_map(self) -> bool:
@@ -128,16 +125,8 @@ def map_light(scene: Scene, light: Light | None = None) -> MapLight:
         sun_colour_in_map=_colour(scene, normal),
         sun_temperature=correlated_temperature(normal),
         exposure_ev=scene_ev(scene),
-        moon=_moon(scene),
+        moon=None if scene.moonlit is None else moon_figures(scene, scene.moonlit),
     )
-
-
-def _moon(scene: Scene) -> MoonLight | None:
-    if scene.moonlit is None:
-        return None
-    from skybake.image.moon_light import moon_light
-
-    return moon_light(scene, scene.moonlit)
 
 
 def holds_sun(sun_disc: str) -> bool:

@@ -10,7 +10,7 @@ import pytest
 
 from skybake.ephemeris.earth import ephem_days
 from skybake.ephemeris.horizon import Horizon
-from skybake.ephemeris.lit_moon import LAST_YEAR, check_year, moon_by_hand
+from skybake.ephemeris.lit_moon import moon_by_hand
 from skybake.ephemeris.moment import sun_at
 from skybake.ephemeris.moonlight import lit_moon_at
 from skybake.ephemeris.place import Place
@@ -92,13 +92,6 @@ def test_refraction_raises_the_moon_with_all_that_is_on_it():
 def test_an_observer_on_mars_has_no_moon_as_a_light():
     gale = Place(math.radians(-4.6), math.radians(137.4), "mars")
     assert sun_at("2026-04-01T18:40Z", gale).lit_moon is None
-
-
-def test_a_year_that_the_ephemeris_does_not_have_is_named_with_its_range():
-    time = datetime(LAST_YEAR + 1, 1, 1, tzinfo=UTC)
-    assert lit_moon_at(time, PARIS, 0.0) is None
-    with pytest.raises(InputError, match=r"moon: year must be from 1 to 3000, .* got 3001"):
-        check_year(time)
 
 
 @pytest.mark.parametrize("phase", [0.0, 0.4, 1.5, 3.0, math.pi])

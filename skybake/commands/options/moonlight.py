@@ -116,8 +116,6 @@ def moonlight_from_options(
     ------
     click.UsageError
         If there is no such Moon.
-    InputError
-        If the Moon's place is not known.
     """
     from skybake.ephemeris.lit_moon import moon_by_hand
     from skybake.image.moonlight import Moonlight, moonlight_at

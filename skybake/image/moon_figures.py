@@ -3,24 +3,30 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from skybake.angles import direction_from_angles
 from skybake.colour.space import ColourSpace, find_colour_space, rgb_from_xyz
 from skybake.formats.spec import Attribute
-from skybake.image.moonlit import Moonlit
-from skybake.image.scene import Scene
+from skybake.image.light import numbers_of
+
+if TYPE_CHECKING:
+    from skybake.image.moonlit import Moonlit
+    from skybake.image.scene import Scene
 
 Triple = tuple[float, float, float]
+ColourAndLight = tuple[Triple, float]
 
 MOON_ILLUMINANCE = "skybake:moonIlluminance"
 """Attribute of maps with a Moon: of the horizontal by its disc. [lx]"""
 
 
 @dataclass(frozen=True, kw_only=True)
-class MoonLight:
+class MoonFigures:
     """The light of the Moon's disc as the observer sees it.
 
     Attributes
@@ -72,12 +78,22 @@ class MoonLight:
         return found | ({"skybake:moonEclipsed": self.eclipsed} if self.eclipsed > 0.0 else {})
 
 
-def moon_light(scene: Scene, lit: Moonlit) -> MoonLight:
-    """Return the light of a scene's Moon."""
+def moon_from_attributes(attributes: Mapping[str, Any]) -> ColourAndLight | None:
+    """Return colour and normal illuminance of the Moon that a file states; None without one."""
+    colour = numbers_of(attributes.get("skybake:moonColour", ()))
+    normal = numbers_of(attributes.get("skybake:moonNormalIlluminance", ()))
+    if len(colour) != 3 or len(normal) != 1:
+        return None
+    red, green, blue = colour
+    return (red, green, blue), normal[0]
+
+
+def moon_figures(scene: Scene, lit: Moonlit) -> MoonFigures:
+    """Return the figures of a scene's Moon."""
     normal, horizontal = lit.xyz()
     moon = lit.moon
     x, y, z = direction_from_angles(lit.bearing, moon.elevation).tolist()
-    return MoonLight(
+    return MoonFigures(
         direction=(x, y, z),
         azimuth=moon.azimuth,
         elevation=moon.elevation,
