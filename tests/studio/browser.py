@@ -75,7 +75,8 @@ class Tab:
 
     def type(self, knob, text):
         """Type into a knob, as on the command line."""
-        self.page.locator(f"#groups details:has([data-knob={knob}])").evaluate("it => it.open = true")
+        group = self.page.locator(f"#groups details:has([data-knob={knob}])")
+        group.evaluate("element => { element.open = true; }")
         field = self.page.locator(f"#groups [data-knob={knob}] .value")
         field.fill(text)
         field.press("Enter")

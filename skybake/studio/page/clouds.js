@@ -20,8 +20,6 @@ export class CloudLayers {
     const buttons = make("div", { class: "row" }, kinds, make("button", { type: "button", onclick: add }, "Add layer"), this.clear);
     this.element = make("div", { class: "clouds" }, this.list, this.fault, buttons);
     panel.replace(["clouds"], this.element);
-    const group = panel.groupOf("clouds");
-    if (group) group.extra = () => this.#given().length;
     store.addEventListener("change", () => this.show());
     this.show();
   }

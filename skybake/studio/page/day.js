@@ -10,6 +10,7 @@ const STEEPEST = 90;
 const WIDTH = 144;
 const HEIGHT = 92;
 const OFFERED = ["sunrise", "noon", "sunset", "civil-dusk", "nautical-dusk"];
+const DATE = /^\d{4}-\d\d-\d\d/;
 const EVENT = /^([a-z]+(?:-[a-z]+)*)([+-].*)?$/;
 const STEP_BY_KEY = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 6, PageDown: -6 };
 
@@ -68,6 +69,8 @@ export class SunPlace {
       const value = this.store.option(name);
       if (value !== undefined) query[name] = value;
     }
+    const [dated] = DATE.exec(this.store.option("time")) ?? [];
+    if (dated) query.date = dated;
     const key = JSON.stringify(query);
     if (key === this.asked) {
       this.#markNow();

@@ -8,8 +8,9 @@ const MIDDLE_GREY = 0.18;
 const REFLECTED = 8; // ISO 100 over the constant 12.5 of a meter for reflected light
 
 const KNOWN = [
-  ["sun_illuminance_lx", "Sunlight", lux],
-  ["sky_illuminance_lx", "Skylight", lux],
+  ["sun_illuminance_lx", "Sun, facing it", lux],
+  ["sun_horizontal_illuminance_lx", "Sun, level", lux],
+  ["sky_illuminance_lx", "Sky, level", lux],
   ["sun_temperature_k", "Sun's colour", (kelvin, figures) => coloured(figures.sun_colour, kelvin ? `${round(kelvin, 3)}\u00a0K` : "")],
   ["sun_elevation_deg", "Sun's elevation", degrees],
   ["sun_azimuth_deg", "Sun's bearing", degrees],
@@ -42,7 +43,7 @@ export function showProbe(frame, found, gain) {
     ["Spot meter", level > 0 ? `EV ${Math.log2(level * REFLECTED).toFixed(1)}` : "–"],
     ["Temperature", y > 0 ? coloured(light, kelvin ? `${round(kelvin, 3)} K` : "off white") : "–"],
     ["x, y", xy ? xy.map((value) => value.toFixed(3)).join(", ") : "–"],
-    ["Bearing, height", `${found.azimuth.toFixed(1)}°, ${found.elevation.toFixed(1)}°`],
+    ["Direction", `${found.azimuth.toFixed(1)}°, ${found.elevation.toFixed(1)}°`],
   ];
   byId("probe").replaceChildren(...rows.flatMap(([title, text]) => row(title, text)));
 }

@@ -79,7 +79,7 @@ export class Panel {
   show() {
     for (const group of this.groups) {
       for (const knob of group.knobs) knob.show();
-      const count = group.knobs.filter((knob) => knob.value.get() !== undefined).length + (group.extra?.() ?? 0);
+      const count = group.knobs.filter((knob) => knob.value.get() !== undefined).length;
       group.changes.textContent = count ? `${count} changed` : "";
     }
   }
@@ -108,7 +108,7 @@ export class Panel {
         knob.element.hidden = !isShown;
         shown += isShown;
       }
-      group.element.hidden = shown === 0 && (wanted !== "" || group.knobs.length > 0) && !group.extra;
+      group.element.hidden = shown === 0 && (wanted !== "" || group.knobs.length > 0);
       if (wanted && shown) group.element.open = true;
       found += shown;
     }

@@ -36,16 +36,22 @@ const float PI = 3.141592653589793;
 
 uniform float pixel;           // angle of one, about
 
-vec3 lookUp(vec3 d) {
+vec3 withoutSun(vec3 d) {
   vec2 at = vec2(atan(d.x, -d.z) / (2.0 * PI), acos(clamp(d.y, -1.0, 1.0)) / PI);
-  vec3 light = textureLod(sky, at, 0.0).rgb;
-  // An outline by angles is round at every zoom; texels as large as the disc are not.
-  float away = length(cross(d, sunward));
-  if (dot(d, sunward) < 0.0 || away > 2.0 * sunRadius + 0.01) return light;
-  float soft = max(0.7 * pixel, 0.02 * sunRadius);
+  return textureLod(sky, at, 0.0).rgb;
+}
+
+// Share of a pixel that the disc covers. An outline by angles is round at every zoom; texels as
+// large as the disc are not.
+float sunShare(vec3 d) {
+  float away = length(cross(d, sunward)), soft = max(0.7 * pixel, 0.02 * sunRadius);
+  if (dot(d, sunward) < 0.0) return 0.0;
   float share = 1.0 - smoothstep(sunRadius - soft, sunRadius + soft, away);
-  share *= smoothstep(sunFloor - soft, sunFloor + soft, d.y);
-  return light + discLight * share;
+  return share * smoothstep(sunFloor - soft, sunFloor + soft, d.y);
+}
+
+vec3 lookUp(vec3 d) {
+  return withoutSun(d) + discLight * sunShare(d);
 }
 `;
 
@@ -62,6 +68,14 @@ vec3 shown(vec3 light) {
   vec3 stops = log2(max(scene, 1e-12) / shaper.x);
   vec3 t = clamp((stops - shaper.y) / (shaper.z - shaper.y), 0.0, 1.0);
   return texture(table, (t * (shaper.w - 1.0) + 0.5) / shaper.w).rgb;
+}
+
+// A disc that is a thousand times too bright has stairs unless its share is taken of what is shown.
+vec3 seen(vec3 d) {
+  vec3 light = withoutSun(d);
+  float share = sunShare(d);
+  vec3 around = shown(light);
+  return share > 0.0 && discLight != vec3(0.0) ? mix(around, shown(light + discLight), share) : around;
 }
 `;
 
@@ -178,7 +192,7 @@ vec3 face(vec2 at, out bool isShown) {
 }
 
 void main() {
-  vec3 light = vec3(0.0);
+  vec3 d = vec3(0.0, 1.0, 0.0);
   bool isShown = true;
   float cover = 1.0;
   vec2 p = 2.0 * place - 1.0;
@@ -186,23 +200,25 @@ void main() {
     colour = vec4(set(), 1.0);
     return;
   }
-  if (view == ${VIEWS.planet}) light = textureLod(sky, place, 0.0).rgb;
-  else if (view == ${VIEWS.equirect}) {
+  if (view == ${VIEWS.planet}) {
+    colour = vec4(shown(textureLod(sky, place, 0.0).rgb), 1.0);
+    return;
+  }
+  if (view == ${VIEWS.equirect}) {
     vec2 turn = vec2(2.0 * PI, PI) * place;
-    light = lookUp(vec3(sin(turn.x) * sin(turn.y), cos(turn.y), -cos(turn.x) * sin(turn.y)));
+    d = vec3(sin(turn.x) * sin(turn.y), cos(turn.y), -cos(turn.x) * sin(turn.y));
   }
   else if (view == ${VIEWS.look}) {
-    light = lookUp(normalize(forward + p.x * halfAngle.x * right - p.y * halfAngle.y * up));
+    d = normalize(forward + p.x * halfAngle.x * right - p.y * halfAngle.y * up);
   } else if (view == ${VIEWS.cross}) {
-    vec3 d = face(place * vec2(4.0, 3.0), isShown);
-    light = lookUp(normalize(d));
+    d = normalize(face(place * vec2(4.0, 3.0), isShown));
   } else {
     float away = length(p) * PI / 2.0;
     cover = 1.0 - smoothstep(1.0 - 2.0 * pixel / PI, 1.0, length(p));
     vec2 level = normalize(p + vec2(1e-9, 0.0)) * sin(away);
-    light = lookUp(vec3(-level.x, cos(away), level.y));
+    d = vec3(-level.x, cos(away), level.y);
   }
-  colour = vec4(isShown ? cover * shown(light) : vec3(0.0), 1.0);
+  colour = vec4(isShown ? cover * seen(d) : vec3(0.0), 1.0);
 }`;
 
 export const FRAGMENT = HEAD + SHOWN + BALLS + MAIN;
