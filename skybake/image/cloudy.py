@@ -73,8 +73,8 @@ class CloudsOver:
         shape = pixels.shape[:2]
         if not pixels.size:
             return pixels, np.zeros(shape, np.float32)
-        places = [np.broadcast_to(each, shape) for each in (zenith, azimuth, footprint)]
-        out, opacity = self._put(pixels, *places)
+        out, opacity = self._put(pixels, zenith, azimuth, footprint)
+        places = (np.broadcast_to(each, shape) for each in (zenith, azimuth, footprint))
         angle, around, extent = (each.ravel() for each in places)
         above = (self._cloudscape.horizon - angle) / extent + 0.5
         is_both = (above > WHOLE) & (above < 1.0 - WHOLE)
@@ -103,20 +103,23 @@ class CloudsOver:
         return total, hidden
 
     def _put(
-        self, pixels: np.ndarray, zenith: Array, azimuth: Array, footprint: Array
+        self, pixels: np.ndarray, zenith: Array, azimuth: Array, footprint: Array | float
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return pixels (pixel, 3) of rows (row, column, 3) with clouds, and what these hide."""
-        clouds = self._cloudscape
+        clouds, shape = self._cloudscape, pixels.shape[:2]
         xyz = pixels @ self._to_xyz
-        angle, bearing, extent = zenith.ravel(), azimuth.ravel() + self._sun_azimuth, footprint
-        directions = unit_vectors(angle, bearing)
         # Each pixel by its own size: which others are in its band must not matter.
-        classes = np.rint(np.log(extent.ravel()) / math.log(ALIKE)).astype(int)
+        sizes = np.rint(np.log(footprint) / math.log(ALIKE)).astype(int)
+        classes, extent = (np.broadcast_to(each, shape) for each in (sizes, footprint))
+        angle, bearing = (
+            np.broadcast_to(each, shape).ravel() for each in (zenith, azimuth + self._sun_azimuth)
+        )
+        directions, classes = unit_vectors(angle, bearing), classes.ravel()
 
         def see(pixels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             return _see(clouds, directions[pixels], classes[pixels])
 
-        given = directions.reshape(*zenith.shape, 3), np.ascontiguousarray(extent), xyz
+        given = directions.reshape(*shape, 3), np.ascontiguousarray(extent, float), xyz
         seen, passing = see_rows(see, *given, clouds.alike, clouds.workers)
         light, opacity = clouds.put_into(xyz.reshape(-1, 3), angle, bearing, seen, passing)
         return light @ self._to_rgb, opacity
