@@ -22,6 +22,7 @@ from skybake.image.light import (
     attributes_from_light,
     eclipse_attributes,
     light_of_scene,
+    moon_attributes,
     star_attributes,
 )
 from skybake.image.parts import part_names
@@ -74,6 +75,8 @@ class Baked(Light):
         The files that tell it.
     eclipse : mapping of str to Attribute
         What files state of an eclipse; empty without one.
+    moonlight : mapping of str to Attribute
+        What files state of the Moon as a light; empty without it.
     star_illuminance : float or None
         Of the horizontal by stars; None of a map without them. [lx]
     """
@@ -90,6 +93,7 @@ class Baked(Light):
     map_light: MapLight | None = None
     light_files: tuple[Path, ...] = ()
     eclipse: Mapping[str, Attribute] = field(default_factory=dict)
+    moonlight: Mapping[str, Attribute] = field(default_factory=dict)
     star_illuminance: float | None = None
 
 
@@ -195,13 +199,14 @@ def bake_scene(
         scene.light_clouds()
     begin("pixels")
     light = light_of_scene(scene)
-    eclipse = eclipse_attributes(scene)
+    eclipse, moonlight = eclipse_attributes(scene), moon_attributes(scene)
     from_below, starlight = _from_below(scene), star_attributes(scene)
     described = None if light_files is None else map_light(scene, light)
     attributes = {
         **attributes_from_light(light),
         **({} if from_below is None else dict(zip(FROM_BELOW, from_below, strict=True))),
         **starlight,
+        **moonlight,
         **eclipse,
         **recipe_attributes(planet, settings),
         **(attributes or {}),
@@ -213,7 +218,6 @@ def bake_scene(
     largest, smallest = bands.value_range(peak) if bands else value_range(scene, peak)
     warnings = scene_warnings(scene, peak) + (bands.warnings() if bands else [])
     stored = fitting_pixel(encoding.pixel, largest, smallest) if pixel is None else pixel
-
     spec = partial(_spec, settings=settings, stored=stored, attributes=attributes, bands=bands)
     with ExitStack() as stack:
         if files is None:
@@ -258,6 +262,7 @@ def bake_scene(
         map_light=described,
         light_files=tuple(light_files or ()),
         eclipse=eclipse,
+        moonlight=moonlight,
         star_illuminance=starlight.get(STAR_ILLUMINANCE),
     )
 

@@ -12,6 +12,7 @@ from skybake.colour.space import ColourSpace, find_colour_space
 from skybake.ephemeris.moon import Moon
 from skybake.errors import InputError
 from skybake.formats.compression import parse_compression
+from skybake.image.moonlight import Moonlight
 from skybake.image.night import Night
 from skybake.image.sensor import Sensor
 from skybake.projection import Equirect, Projection, find_projection
@@ -217,6 +218,8 @@ class MapSettings:
         When clouds are seen, if the world has any.
     night : Night
         Which stars are shown.
+    moonlight : Moonlight
+        Where the Moon stands as a light.
     sensor : Sensor
         What is recorded besides what an eye sees, or instead.
     """
@@ -226,6 +229,7 @@ class MapSettings:
     encoding: Encoding = field(default_factory=Encoding)
     clouds: Clouds = field(default_factory=Clouds)
     night: Night = field(default_factory=Night)
+    moonlight: Moonlight = field(default_factory=Moonlight)
     sensor: Sensor = field(default_factory=Sensor)
 
     def recipe(self, *, has_clouds: bool = False) -> dict[str, Any]:
@@ -262,6 +266,7 @@ class MapSettings:
             **({} if lighting.moon is None else lighting.moon.recipe()),
             **(self.clouds.recipe() if has_clouds else {}),
             **self.night.recipe(),
+            **self.moonlight.recipe(),
             **self.sensor.recipe(),
         }
 
@@ -283,9 +288,9 @@ def map_settings(
     **values
         Attributes of `View`, `Lighting` and `Encoding`, such as ``sun_elevation=0.1``, of the
         named projection, such as ``layout="cross"``, ``cloud_time`` [s] and
-        ``clouds_quality``, see `Clouds`, ``night``, a `Night`, and ``sensor``, a `Sensor`. With
-        ``target="blender"`` what is not given is as that program needs it, and a rotation turns
-        what it takes for north.
+        ``clouds_quality``, see `Clouds`, ``night``, a `Night`, ``moonlight``, a `Moonlight`, and
+        ``sensor``, a `Sensor`. With ``target="blender"`` what is not given is as that program
+        needs it, and a rotation turns what it takes for north.
 
     Raises
     ------
@@ -300,6 +305,7 @@ def map_settings(
         names = {one.name for one in fields(kind)}
         parts[name] = {key: values.pop(key) for key in names & values.keys()}
     night, sensor = values.pop("night", Night()), values.pop("sensor", Sensor())
+    moonlight = values.pop("moonlight", Moonlight())
     clouds = {own: values.pop(name) for name, own in _CLOUDS.items() if name in values}
     if isinstance(projection, str):
         size = (size,) if isinstance(size, int) else size
@@ -309,7 +315,7 @@ def map_settings(
         raise InputError(f"settings: {', '.join(given)} must be given by the projection itself")
     view = View(projection=projection, **parts["view"])
     lighting, encoding = Lighting(**parts["lighting"]), Encoding(**parts["encoding"])
-    return MapSettings(view, lighting, encoding, Clouds(**clouds), night, sensor)
+    return MapSettings(view, lighting, encoding, Clouds(**clouds), night, moonlight, sensor)
 
 
 def _for_target(
