@@ -27,7 +27,7 @@ def one_wavelength(medium, k):
 @pytest.mark.parametrize(
     ("name", "elevation", "samples"),
     [
-        ("RAY", 60.0, 1500),
+        ("RAY", 60.0, 1000),
         pytest.param("RAYMIE", 10.0, 20_000, marks=pytest.mark.slow),
         pytest.param("RAY", 0.0, 20_000, marks=pytest.mark.slow),
     ],
@@ -38,7 +38,7 @@ def test_it_agrees_with_another_program_within_their_errors(name, elevation, sam
         (table["sun_elevation_deg"] == elevation)
         & (table["wavelength_nm"] == 440.0)
         & (table["view_zenith_deg"] > 0.0)
-    ][::5]
+    ][::9]
     directions = np.radians(rows["view_zenith_deg"]), np.radians(rows["relative_azimuth_deg"])
     medium = one_wavelength(vector_medium(name), BLUE)
     sun = math.radians(elevation)
@@ -61,8 +61,8 @@ def test_intensity_without_matrices_is_that_of_unpolarised_light():
     """An element of 0 everywhere but P11 leaves nothing of polarisation."""
     medium = one_wavelength(vector_medium("RAY"), BLUE)
     medium = medium._replace(matrix=0.0 * medium.matrix)
-    view = 0.0, 0.4, np.radians([20.0, 70.0]), np.radians([30.0, 150.0])
-    mean, _ = stokes(medium, *view, samples=640, seed=9)
-    plain, _ = radiance(medium, *view, samples=640, seed=9)
+    view = 0.0, 0.4, np.radians([20.0, 70.0]), 0.0
+    mean, _ = stokes(medium, *view, samples=64, seed=9)
+    plain, _ = radiance(medium, *view, samples=64, seed=9)
     np.testing.assert_allclose(mean[:, 0], plain, rtol=1e-12)
     np.testing.assert_array_equal(mean[:, 1:], 0.0)
