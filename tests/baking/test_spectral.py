@@ -167,8 +167,8 @@ def test_a_recipe_and_a_name_tell_the_wavelengths(baked):
         ("earth", {"wavelengths": ()}, "spectral: must be 1 to 512 wavelengths, got 0"),
         ("earth-fair", {}, "spectral: needs a world without clouds"),
         ("earth-hillaire2020", {"wavelengths": (500.0,)}, "needs a preset of rendering spectral"),
-        ("earth", {"mips": True}, "a spectral map must be without mips"),
-        ("earth", {"layers": True}, "a spectral map must be without layers"),
+        ("earth", {"mips": True}, "must be without mips"),
+        ("earth", {"layers": True}, "must be without layers"),
     ],
 )
 def test_what_has_no_spectrum_is_refused_in_a_line_and_leaves_no_file(

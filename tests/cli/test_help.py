@@ -11,6 +11,7 @@ import skybake
 from skybake.aerial import bake
 from skybake.aerial.depth import BACKGROUNDS
 from skybake.cli import main
+from skybake.colour.camera import CAMERA_WHITES
 from skybake.colour.exposure import UNITS
 from skybake.colour.space import COLOUR_SPACES
 from skybake.commands.options import choices
@@ -18,6 +19,7 @@ from skybake.commands.render import render
 from skybake.formats.preview import VIEWS
 from skybake.image import settings
 from skybake.image.aim import AIMS
+from skybake.image.picture_settings import SHOWN
 from skybake.image.target import TARGETS
 from skybake.preset import preset_names
 from skybake.projection import PROJECTIONS
@@ -113,6 +115,8 @@ def test_choices_are_those_of_the_engine():
     assert choices.PIXELS == settings.PIXELS
     assert choices.SUN_DISCS == settings.SUN_DISCS
     assert choices.METHODS == METHODS
+    assert choices.CAMERA_WHITES == CAMERA_WHITES
+    assert choices.SHOWN == SHOWN
     assert choices.VIEWS == VIEWS
     assert choices.AIMS == AIMS
     assert choices.AERIAL_METHODS == bake.METHODS
