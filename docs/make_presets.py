@@ -44,7 +44,10 @@ def tables_table() -> str:
     """Tables that come with skybake, by the keys that they serve."""
     keys: dict[str, list[str]] = {}
     for name, columns in table_columns().items():
-        served = ["phase.table"] if columns[0] == "angle_deg" else columns[1:]
+        served = columns[1:]
+        if columns[0] == "angle_deg":
+            is_matrix = columns[1].startswith("p12_")
+            served = ["phase.polarisation" if is_matrix else "phase.table"]
         served = ["profile"] if columns[0] == "altitude_km" else served
         for key in (key for key in served if not key.endswith("_bar")):
             keys.setdefault(key, []).append(f"`{name}`")

@@ -36,6 +36,9 @@ ASYMMETRY = (-0.75, 0.9)
 from 60 to -6 deg: a backward peak cannot be truncated, and of a sharper forward peak more lies in
 what is truncated than single scattering restores."""
 
+OURS = "360"
+"""A column of all tables of phase functions that come with skybake. [nm]"""
+
 MAX_DEVIATION = 0.01
 """By which the integral of a table may differ from 1; within it the table is normalised."""
 
@@ -85,7 +88,7 @@ def read_phase(section: Section, asymmetry: tuple[float, float] = ASYMMETRY) -> 
 
 
 def _read_table(section: Section) -> TabulatedPhase:
-    columns, angle = read_angles(section, "table")
+    columns, angle = read_angles(section, "table", OURS)
     bands = sorted(
         (wavelength_of_column(section, "table", key), values)
         for key, values in columns.items()

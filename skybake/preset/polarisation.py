@@ -10,6 +10,8 @@ from skybake.preset.section import Section
 
 KEY = "polarisation"
 ELEMENTS = "p12", "p33"
+OURS = "p12_550"
+"""A column of all such tables of skybake."""
 
 LARGEST = 1.0 + 1e-6
 """Of an element over P11, but for the rounding of a table's digits."""
@@ -23,7 +25,7 @@ def read_polarisation(section: Section) -> PolarisationTable:
     PresetError
         If it is not a table of elements that some particle could have.
     """
-    columns, angle = read_angles(section, KEY)
+    columns, angle = read_angles(section, KEY, OURS)
     elements: dict[str, dict[float, tuple[float, ...]]] = {name: {} for name in ELEMENTS}
     for column, values in columns.items():
         if column == "angle_deg":
@@ -49,10 +51,13 @@ def read_polarisation(section: Section) -> PolarisationTable:
 
 
 def read_angles(
-    section: Section, key: str
+    section: Section, key: str, column: str
 ) -> tuple[dict[str, tuple[float, ...]], tuple[float, ...]]:
-    """Read a table over scattering angle; its columns and its angles in radians."""
-    columns = section.table(key, "angle_deg")
+    """Read a table over scattering angle; its columns and its angles in radians.
+
+    Tables of skybake that would do have the given column.
+    """
+    columns = section.table(key, column)
     degrees = columns.get("angle_deg", ())
     if not degrees or degrees[0] != 0.0 or degrees[-1] != 180.0:
         section.fail(key, "column angle_deg must run from 0 to 180")

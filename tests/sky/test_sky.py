@@ -119,7 +119,7 @@ def test_impossible_suns_and_places_are_refused(arguments, message):
     ("options", "message"),
     [
         ({"sun_azimuth": math.inf}, "sun azimuth: must be finite"),
-        ({"method": "magic"}, "method: must be one of full, hillaire, march, got 'magic'"),
+        ({"method": "magic"}, "method: must be one of full, scalar, hillaire, march, got 'magic'"),
     ],
 )
 def test_impossible_options_are_refused(options, message):
