@@ -40,6 +40,7 @@ def test_the_examples_run_in_their_order_and_write_their_files(tmp_path):
         "hazy.exr",
         *(f"sky.{kind}" for kind in ("exr", "light.json", "py", "usda")),
         *(f"storm.{number:04}.exr" for number in range(1, 4)),
+        "spectrum.exr",
         "three.exr",
         "west.exr",
         "west.png",
