@@ -9,18 +9,19 @@ from skybake.ephemeris.celestial import CelestialFrame
 from skybake.image.layers import Pixels
 from skybake.image.scene import Scene
 from skybake.jit.arguments import flatten
-from skybake.night.dome import ABOVE, NightDome
+from skybake.night.air import ABOVE, BEARINGS, NightAir
+from skybake.night.dome import NightDome
 from skybake.night.dome_pixels import fill_dome
 from skybake.optics.medium import Array
 
 ROWS_AT_ONCE = 16
 
 
-def glow_over(scene: Scene, frame: CelestialFrame) -> NightGlow:
+def glow_over(scene: Scene, frame: CelestialFrame, air: NightAir) -> NightGlow:
     """Return the glow of a scene's night, whose stars stand in a frame."""
     night = scene.settings.night
     airglow = night.airglow if frame.planet == "earth" else 0.0
-    dome = NightDome(scene.sky, frame, airglow=airglow, zodiacal=night.zodiacal)
+    dome = NightDome(scene.sky, frame, air, airglow=airglow, zodiacal=night.zodiacal)
     return NightGlow(scene, dome)
 
 
@@ -53,6 +54,7 @@ class NightGlow:
         table = flatten(self._table)
 
         def work(first: int, last: int) -> None:
-            fill_dome(table, ABOVE, self._horizon, *places, first, last, out[first:last])
+            spare = np.empty((BEARINGS + 1, 3), np.float32)
+            fill_dome(table, ABOVE, self._horizon, *places, first, last, spare, out[first:last])
 
         self._workers.run_rows(len(out), work, chunk=ROWS_AT_ONCE)

@@ -23,7 +23,7 @@ from skybake.preset import Planet
 from skybake.projection.cells import Cells
 from skybake.sky.disc import Disc
 from skybake.sky.drawn_disc import DrawnDisc
-from skybake.sky.pixels import allocate_pixels, fill_directions
+from skybake.sky.pixels import allocate_pixels, blacken_negative, fill_directions
 from skybake.sky.sky import Sky
 from skybake.sky.table import FoldedTable
 
@@ -172,7 +172,10 @@ class Scene:
             return None
         from skybake.image.night_glow import glow_over
 
-        return glow_over(self, night.frame)
+        has_airglow = night.frame.planet == "earth" and night.airglow > 0.0
+        return glow_over(
+            self, night.frame, self._stages.night_air(self.sky, has_airglow=has_airglow)
+        )
 
     def light_clouds(self) -> None:
         """Solve for the light of clouds, which takes longest, before pixels show them."""
@@ -288,9 +291,9 @@ class Scene:
         """Pixel values of the sky without clouds, see `evaluate`."""
         pixels = self._evaluate(self.table, zenith, azimuth, footprint)
         weights = self.luminance.astype(np.float32)
-        # The least value is found 50 times as fast as luminances are.
+        # The least value is found faster than luminances are.
         if pixels.min(initial=0.0) < 0.0 or weights.min() < 0.0:
-            pixels[pixels @ weights < 0.0] = 0.0
+            blacken_negative(weights, pixels)
         if self.night_glow is not None:
             self.night_glow.add(zenith, azimuth, footprint, pixels)
         return pixels

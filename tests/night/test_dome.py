@@ -7,7 +7,8 @@ import pytest
 
 from skybake.angles import direction_from_angles
 from skybake.ephemeris.celestial import CelestialFrame
-from skybake.night.dome import ABOVE, NightDome, row_zeniths
+from skybake.night.air import ABOVE, row_zeniths
+from skybake.night.dome import NightDome
 from skybake.sky.sky import Sky
 
 GALACTIC_POLE_OVERHEAD = CelestialFrame("earth", math.radians(192.9), math.radians(27.1))
