@@ -18,6 +18,7 @@ from skybake.commands.options.night import (
     night_from_options,
     night_needs,
     night_options,
+    scaled_for_night,
 )
 from skybake.commands.options.observer import (
     altitude_option,
@@ -126,7 +127,7 @@ def render(**options: Any) -> None:
     distance = sun_distance(planet, moment, options["sun_distance"])
     moon = moon_from_options(options, planet, moment, distance)
     lighting = replace(settings.lighting, sun_distance=distance, moon=moon)
-    settings = replace(settings, lighting=lighting)
+    settings = scaled_for_night(options, replace(settings, lighting=lighting))
     output = options["output"] or default_path(planet, settings)
     preview = preview_beside(output) if options["preview"] == BESIDE else options["preview"]
     quiet = options["quiet"]

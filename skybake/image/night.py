@@ -72,14 +72,19 @@ class Night:
                 )
 
     @property
+    def is_lit(self) -> bool:
+        """Whether it has any lights."""
+        return self.is_shown and self.frame is not None
+
+    @property
     def shows_glow(self) -> bool:
         """Whether the sky between stars has a light of its own."""
-        return self.is_shown and self.frame is not None and self.stars != "only"
+        return self.is_lit and self.stars != "only"
 
     @property
     def shows_stars(self) -> bool:
         """Whether there can be any."""
-        return self.is_shown and self.frame is not None and self.stars != "exclude"
+        return self.is_lit and self.stars != "exclude"
 
     def recipe(self) -> dict[str, Any]:
         """All that decides the pixels, in human-readable units, fit for JSON."""

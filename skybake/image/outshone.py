@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from skybake.image.scene import Scene
 
 STAR_SHARE = 0.02
-"""Share that the brightest star or planet must add to the darkest pixel, or else all are left out."""
+"""Share that the brightest star or planet must add to the darkest pixel; if not, none is shown."""
 
 GLOW_SHARE = 1e-3
 """Share of the darkest light of the sky that the glow of the night must be to be seen."""
@@ -36,9 +36,8 @@ def stars_are_outshone(scene: Scene) -> bool:
     canvases = scene.settings.view.projection.canvases()
     charts = [part.chart for canvas in canvases for part in canvas.parts]
     smallest = min(float(chart.footprints(0, 1).min()) for chart in charts)
-    is_lost: bool = _VEGA * 10.0 ** (
-        -0.4 * brightest
-    ) * _PEAK / smallest**2 < STAR_SHARE * _darkest(scene)
+    peak = _VEGA * 10.0 ** (-0.4 * brightest) * _PEAK / smallest**2
+    is_lost: bool = peak < STAR_SHARE * _darkest(scene)
     return is_lost
 
 

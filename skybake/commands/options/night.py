@@ -14,6 +14,7 @@ from skybake.errors import InputError
 if TYPE_CHECKING:
     from skybake.ephemeris.moment import Moment
     from skybake.image.night import Night
+    from skybake.image.settings import MapSettings
 
 night_options = options_together(
     click.option(
@@ -76,6 +77,21 @@ def night_needs(options: Mapping[str, Any], *, is_timed: bool, time: str) -> Nee
             f"cannot be combined with {time}" if is_timed else "needs --lat",
         ),
     }
+
+
+def is_scale_open(options: Mapping[str, Any]) -> bool:
+    """Whether no option says what 1.0 stands for, so that a night may have a scale of its own."""
+    return all(options.get(name) is None for name in ("units", "ev", "target"))
+
+
+def scaled_for_night(options: Mapping[str, Any], settings: MapSettings) -> MapSettings:
+    """Return the settings of a map at the scale of a night, if it is of one and none is given."""
+    if not (is_scale_open(options) and settings.night.is_lit):
+        return settings
+    from skybake.image.night_scale import night_scaled
+
+    (scaled,) = night_scaled([settings])
+    return scaled
 
 
 def night_from_options(options: Mapping[str, Any], moment: Moment | None = None) -> Night:

@@ -27,7 +27,7 @@ def print_summary(baked: Baked, settings: MapSettings, seconds: float) -> None:
     click.echo(
         f"sun {baked.direct_illuminance:.5g} lx ({baked.direct_normal_illuminance:.5g} lx facing "
         f"it), sky {baked.sky_illuminance:.5g} lx on the horizontal; "
-        f"1.0 = {baked.white_luminance:.6g} cd/m2; {baked.pixel}; {seconds:.2f} s"
+        f"1.0 = {baked.white_luminance:.6g} cd/m2{_scale(settings)}; {baked.pixel}; {seconds:.2f} s"
     )
     eclipse = _eclipse(baked)
     if eclipse is not None:
@@ -44,6 +44,13 @@ def print_summary(baked: Baked, settings: MapSettings, seconds: float) -> None:
         click.echo(f"{baked.clamped} negative values, out of gamut, were stored as 0")
     for line in target_lines(settings):
         click.echo(line)
+
+
+def _scale(settings: MapSettings) -> str:
+    from skybake.image.night_scale import NIGHT_EV
+
+    of_night = settings.night.is_lit and settings.encoding.ev == NIGHT_EV
+    return f" (EV {NIGHT_EV:g}, of a night)" if of_night else ""
 
 
 def target_lines(settings: MapSettings) -> list[str]:
