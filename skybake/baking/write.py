@@ -15,12 +15,11 @@ from skybake.baking.pixel_type import PixelType, fitting_pixel, value_range
 from skybake.formats.spec import Attribute, MapSpec
 from skybake.formats.whole_files import WholeFiles
 from skybake.image.light import (
-    STAR_ILLUMINANCE,
     Light,
     attributes_from_light,
     eclipse_attributes,
     light_of_scene,
-    star_attributes,
+    night_attributes,
 )
 from skybake.image.parts import part_names
 from skybake.image.picture_settings import PictureSettings
@@ -68,8 +67,8 @@ class Baked(Light):
         The files that tell it.
     eclipse : mapping of str to Attribute
         What files state of an eclipse; empty without one.
-    star_illuminance : float or None
-        Of the horizontal by stars; None of a map without them. [lx]
+    night : mapping of str to Attribute
+        What files state of the lights of the night; empty by day.
     """
 
     files: tuple[Path, ...]
@@ -84,7 +83,7 @@ class Baked(Light):
     map_light: MapLight | None = None
     light_files: tuple[Path, ...] = ()
     eclipse: Mapping[str, Attribute] = field(default_factory=dict)
-    star_illuminance: float | None = None
+    night: Mapping[str, Attribute] = field(default_factory=dict)
 
 
 def bake(
@@ -189,12 +188,12 @@ def bake_scene(
     begin("pixels")
     light = light_of_scene(scene)
     eclipse = eclipse_attributes(scene)
-    from_below, starlight = _from_below(scene), star_attributes(scene)
+    from_below, night = _from_below(scene), night_attributes(scene)
     described = None if light_files is None else map_light(scene, light)
     attributes = {
         **attributes_from_light(light),
         **({} if from_below is None else dict(zip(FROM_BELOW, from_below, strict=True))),
-        **starlight,
+        **night,
         **eclipse,
         **recipe_attributes(planet, settings),
         **(attributes or {}),
@@ -263,7 +262,7 @@ def bake_scene(
         map_light=described,
         light_files=tuple(light_files or ()),
         eclipse=eclipse,
-        star_illuminance=starlight.get(STAR_ILLUMINANCE),
+        night=night,
     )
 
 

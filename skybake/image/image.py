@@ -15,7 +15,7 @@ from skybake.image.light import (
     attributes_from_light,
     eclipse_attributes,
     light_of_scene,
-    star_attributes,
+    night_attributes,
 )
 from skybake.image.meter import scene_ev, scene_white
 from skybake.image.picture import PREVIEW_WIDTH, CodeValues, code_values
@@ -148,7 +148,7 @@ def image_of_scene(scene: Scene, progress: Callable[[float], None] | None = None
         metadata={
             **attributes_from_light(light),
             **eclipse_attributes(scene),
-            **star_attributes(scene),
+            **night_attributes(scene),
             **recipe_attributes(scene.planet, scene.settings),
         },
     )

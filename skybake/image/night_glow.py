@@ -22,7 +22,7 @@ def glow_over(scene: Scene, frame: CelestialFrame, air: NightAir) -> NightGlow:
     night = scene.settings.night
     airglow = night.airglow if frame.planet == "earth" else 0.0
     dome = NightDome(scene.sky, frame, air, airglow=airglow, zodiacal=night.zodiacal)
-    return NightGlow(scene, dome)
+    return NightGlow(scene, dome, airglow)
 
 
 class NightGlow:
@@ -34,9 +34,22 @@ class NightGlow:
         What is shown.
     dome : NightDome
         Its light.
+    airglow : float
+        Factor of airglow in it.
+
+    Attributes
+    ----------
+    airglow : float
+        As given.
+    illuminance : float
+        Of a horizontal plane, without clouds. [lx]
+    zenith_luminance : float
+        [cd m⁻²]
     """
 
-    def __init__(self, scene: Scene, dome: NightDome) -> None:
+    def __init__(self, scene: Scene, dome: NightDome, airglow: float) -> None:
+        self.airglow = airglow
+        self.illuminance, self.zenith_luminance = dome.illuminance, dome.zenith_luminance
         encoding = scene.settings.encoding
         to_rgb = rgb_from_xyz(encoding.space).T / encoding.white_luminance
         self._table = (dome.xyz @ to_rgb).astype(np.float32)

@@ -64,6 +64,18 @@ class NightDome:
         self.xyz = self._seen(lights)
         self.xyz += (airglow * MEAN_AIRGLOW * self._air.airglow)[:, None]
 
+    @property
+    def zenith_luminance(self) -> float:
+        """Of the zenith. [cd m⁻²]"""
+        return float(self.xyz[0, :, 1].mean())
+
+    @property
+    def illuminance(self) -> float:
+        """Of a horizontal plane. [lx]"""
+        zenith = self._air.zenith[:ABOVE]
+        ring = self.xyz[:ABOVE, :, 1].mean(axis=1) * np.sin(zenith)
+        return float(2.0 * math.pi * np.trapezoid(ring * np.maximum(np.cos(zenith), 0.0), zenith))
+
     def _seen(self, lights: list[tuple[Array, Array]]) -> Array:
         """XYZ of sources at infinity, each a table (row, bearing) and a spectrum."""
         air = self._air

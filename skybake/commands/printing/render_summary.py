@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from skybake.commands.printing.night import night_lines, night_result
 from skybake.units import degrees
 
 if TYPE_CHECKING:
@@ -38,8 +39,8 @@ def print_summary(baked: Baked, settings: MapSettings, seconds: float) -> None:
     if baked.from_below is not None:
         by_map, by_ground = baked.from_below
         click.echo(f"from below {by_map:.5g} lx, instead of {by_ground:.5g} lx by the ground")
-    if baked.star_illuminance is not None:
-        click.echo(f"stars {baked.star_illuminance:.3g} lx on the horizontal")
+    for line in night_lines(baked.night):
+        click.echo(line)
     if baked.clamped:
         click.echo(f"{baked.clamped} negative values, out of gamut, were stored as 0")
     for line in target_lines(settings):
@@ -105,7 +106,7 @@ def result(
         "direct_normal_illuminance_lux": baked.direct_normal_illuminance,
         "sky_illuminance_lux": baked.sky_illuminance,
         "eclipse": _eclipse(baked),
-        "star_illuminance_lux": baked.star_illuminance,
+        **night_result(baked.night),
         "white_luminance_cd_m2": baked.white_luminance,
         "exposure_ev": light.exposure_ev,
         "projection": light.projection,
