@@ -21,6 +21,9 @@ BRIGHTEST_GLOW = 1.5e-3
 BRIGHTEST_PLANET = -4.9
 """Venus, in V. [mag]"""
 
+CITY_AT_HORIZON = 20.0
+"""Brightness of the glow of cities at the horizon over that in the zenith."""
+
 _VEGA = 2.55e-6
 """Illuminance by V = 0 above the air. [lx]"""
 
@@ -45,6 +48,7 @@ def glow_is_outshone(scene: Scene) -> bool:
     """Whether the sky is a thousand times as bright as that of a night."""
     night = scene.settings.night
     brightest = BRIGHTEST_GLOW * max(night.airglow, night.zodiacal, 1.0)
+    brightest += CITY_AT_HORIZON * night.city
     return brightest < GLOW_SHARE * _darkest(scene)
 
 

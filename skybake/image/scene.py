@@ -172,10 +172,7 @@ class Scene:
             return None
         from skybake.image.night_glow import glow_over
 
-        has_airglow = night.frame.planet == "earth" and night.airglow > 0.0
-        return glow_over(
-            self, night.frame, self._stages.night_air(self.sky, has_airglow=has_airglow)
-        )
+        return glow_over(self, night.frame, self._stages)
 
     def light_clouds(self) -> None:
         """Solve for the light of clouds, which takes longest, before pixels show them."""

@@ -34,9 +34,9 @@ class Stages:
         """
         return fold_table(self.spectral_table(sky, finely=finely), sky.skylight.basis, rgb_weights)
 
-    def night_air(self, sky: Sky, *, has_airglow: bool) -> NightAir:
+    def night_air(self, sky: Sky, *, has_airglow: bool, has_city: bool) -> NightAir:
         """Return what of the night over the observer no hour changes."""
         # By day there is none.
         from skybake.night.air import NightAir
 
-        return NightAir(sky, has_airglow=has_airglow)
+        return NightAir(sky, has_airglow=has_airglow, has_city=has_city)

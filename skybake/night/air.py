@@ -10,6 +10,7 @@ from skybake.angles import direction_from_angles
 from skybake.colour.observer import LUMINOUS_EFFICACY, load_observer, xyz_weights
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.night.airglow import Layer, airglow_layers, path_through
+from skybake.night.city import ground_response, lamp_spectrum
 from skybake.optics.medium import Array
 from skybake.sky.extended import STEPS, ExtendedSky
 from skybake.sky.sky import Sky
@@ -35,6 +36,8 @@ class NightAir:
         The observer and the air; its sun counts for nothing.
     has_airglow : bool
         Whether the air glows by itself, as that of Earth.
+    has_city : bool
+        Whether the ground does, by lamps.
 
     Attributes
     ----------
@@ -50,25 +53,33 @@ class NightAir:
         XYZ [cd m⁻²] is the spectral radiance times these.
     airglow : ndarray of float64, shape (row, 3)
         XYZ of airglow at the level of its table. [cd m⁻²]
+    city : ndarray of float64, shape (row, 3)
+        XYZ of the glow of a city all around, whose luminance in the zenith is 1.
     """
 
-    def __init__(self, sky: Sky, *, has_airglow: bool) -> None:
+    def __init__(self, sky: Sky, *, has_airglow: bool, has_city: bool = False) -> None:
         skylight, medium = sky.skylight, sky.skylight.atmosphere.medium
         self._radius, self._bottom = skylight.radius, medium.r_bottom
-        self._sources = ExtendedSky(skylight.atmosphere, self._radius)
+        self.sources = ExtendedSky(skylight.atmosphere, self._radius)
         self._wavelengths = sky.wavelengths
         self.zenith_horizon = math.pi - math.asin(min(self._bottom / self._radius, 1.0))
         self.zenith = row_zeniths(self.zenith_horizon)
         self._nodes, self._between = self._node_rows(is_smooth=self._radius < medium.r_top)
         bearing = 2.0 * math.pi * np.arange(BEARINGS) / BEARINGS
         self.vectors = direction_from_angles(bearing, 0.5 * math.pi - self.zenith[:, None])
-        self.passing = self._sources.passing(np.cos(self.zenith))
+        self.passing = self.sources.passing(np.cos(self.zenith))
         flat = np.ones_like(_EVERYWHERE)
         self.weights = xyz_weights(sky.wavelengths, _EVERYWHERE, flat)
         self.airglow = np.zeros((ABOVE + BELOW, 3))
         if has_airglow:
+            theta = np.linspace(0.0, 0.5 * math.pi, STEPS)
             for layer in airglow_layers():
-                self.airglow += self._airglow(layer, sky.workers)
+                seen = self.scattered(self.layer_from_ground(layer, theta), sky.workers)
+                seen += self.layer_directly(layer, self.zenith, self.passing)
+                self.airglow += lines_xyz(layer, self._wavelengths, seen)
+        self.city = np.zeros((ABOVE + BELOW, 3))
+        if has_city:
+            self.city = self._city(sky)
 
     def scattered(self, rings: Array, workers: Workers = ALL_CPUS) -> Array:
         """Radiance that is scattered toward the observer, shape (row, wavelength).
@@ -80,7 +91,7 @@ class NightAir:
         workers : Workers, optional
             Threads that do the work.
         """
-        at_nodes = self._sources.scattered(np.cos(self._nodes), rings, workers)
+        at_nodes = self.sources.scattered(np.cos(self._nodes), rings, workers)
         light: Array = self._between @ at_nodes
         return light
 
@@ -95,21 +106,71 @@ class NightAir:
         weights[ABOVE:, NODES_ABOVE:] = _cubic_weights(BELOW, NODES_BELOW)
         return nodes, weights
 
-    def _airglow(self, layer: Layer, workers: Workers) -> Array:
-        """XYZ of a layer's light, shape (row, 3)."""
-        near, far = path_through(layer, self._bottom, self._radius, np.cos(self.zenith))
+    def _city(self, sky: Sky) -> Array:
+        """XYZ of the glow of a city, and of the ground that it lights, shape (row, 3)."""
+        zenith = self.zenith[:ABOVE]
+        glow = ground_response(sky, zenith, sky.workers)
+        glow = glow * lamp_spectrum(sky.wavelengths, self.weights[:, 1])
+        on_plane = np.sin(zenith) * np.maximum(np.cos(zenith), 0.0)
+        irradiance = 2.0 * math.pi * np.trapezoid(glow * on_plane[:, None], zenith, axis=0)
+        albedo = sky.skylight.atmosphere.medium.ground_albedo
+        ground = np.broadcast_to(albedo * irradiance / math.pi, (BELOW, albedo.size))
+        xyz = np.concatenate([glow, ground]) @ self.weights
+        in_zenith: Array = xyz / xyz[0, 1]
+        return in_zenith
+
+    def rings(self, parts: Array, spectra: Array) -> Array:
+        """Means around the vertical of a light, as `scattered` takes them.
+
+        Parameters
+        ----------
+        parts : ndarray of float64, shape (part, row, bearing)
+            Brightness of its parts at `vectors`.
+        spectra : ndarray of float64, shape (part, wavelength)
+            Of these.
+        """
         theta = np.linspace(0.0, 0.5 * math.pi, STEPS)
-        below = path_through(layer, self._bottom, self._bottom, np.cos(theta))[1]
-        seen = near[:, None] + far[:, None] * self.passing + self.scattered(below, workers)
-        # Each line has its own colour, and of the air only what it does at its wavelength.
-        nodes, bars = load_observer()
-        colours = np.stack(
-            [np.interp(layer.wavelengths, nodes, bar, left=0.0, right=0.0) for bar in bars.T],
-            axis=1,
-        )
-        at_lines = np.stack([np.interp(layer.wavelengths, self._wavelengths, row) for row in seen])
-        xyz: Array = LUMINOUS_EFFICACY * (at_lines * layer.radiance) @ colours
-        return xyz
+        zenith = self.zenith[:ABOVE]
+        means = [np.interp(theta, zenith, part[:ABOVE].mean(axis=1)) for part in parts]
+        rings: Array = np.stack(means, axis=1) @ spectra
+        return rings
+
+    def layer_from_ground(self, layer: Layer, zenith: Array) -> Array:
+        """Length of rays from the ground in a layer over its thickness, shape (ray,)."""
+        return path_through(layer, self._bottom, self._bottom, np.cos(zenith))[1]
+
+    def layer_directly(self, layer: Layer, zenith: Array, passing: Array) -> Array:
+        """Return what is seen of a layer without scattering, (ray, wavelength).
+
+        Over what is seen in the zenith from below, at zenith angles [rad] in which the share
+        `passing` passes the air, as of `ExtendedSky`.
+        """
+        near, far = path_through(layer, self._bottom, self._radius, np.cos(zenith))
+        seen: Array = near[:, None] + far[:, None] * passing
+        return seen
+
+
+def lines_xyz(layer: Layer, wavelengths: Array, seen: Array) -> Array:
+    """XYZ of the lines of a layer, shape (ray, 3).
+
+    Parameters
+    ----------
+    layer : Layer
+        Whose lines.
+    wavelengths : ndarray of float64, shape (wavelength,)
+        [nm]
+    seen : ndarray of float64, shape (ray, wavelength)
+        What is seen over the layer's radiance in the zenith from below.
+    """
+    # Each line has its own colour, and of the air only what it does at its wavelength.
+    nodes, bars = load_observer()
+    colours = np.stack(
+        [np.interp(layer.wavelengths, nodes, bar, left=0.0, right=0.0) for bar in bars.T],
+        axis=1,
+    )
+    at_lines = np.stack([np.interp(layer.wavelengths, wavelengths, row) for row in seen])
+    xyz: Array = LUMINOUS_EFFICACY * (at_lines * layer.radiance) @ colours
+    return xyz
 
 
 def row_zeniths(zenith_horizon: float, above: int = ABOVE, below: int = BELOW) -> Array:

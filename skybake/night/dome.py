@@ -6,13 +6,11 @@ import math
 
 import numpy as np
 
-from skybake.constants import ASTRONOMICAL_UNIT
-from skybake.ephemeris.celestial import TO_ECLIPTIC, CelestialFrame
+from skybake.ephemeris.celestial import CelestialFrame
 from skybake.night.air import ABOVE, NightAir
-from skybake.night.milky_way import TO_GALAXY, starlight, starlight_spectrum
-from skybake.night.zodiacal import FALL, REFERENCE, far_share, zodiacal_colours, zodiacal_light
+from skybake.night.city import toward_city
+from skybake.night.glows import Glow, faint_stars, zodiacal_glow
 from skybake.optics.medium import Array
-from skybake.optics.spectrum import star_irradiance
 from skybake.sky.extended import STEPS
 from skybake.sky.sky import Sky
 
@@ -21,7 +19,7 @@ MEAN_AIRGLOW = 0.8
 
 
 class NightDome:
-    """Light of airglow, zodiacal light and faint stars, after the air has scattered it.
+    """Light of airglow, zodiacal light, faint stars and cities, after the air has scattered it.
 
     Parameters
     ----------
@@ -31,9 +29,12 @@ class NightDome:
         How the stars stand.
     air : NightAir, optional
         What the same observer's night had before.
-    airglow, zodiacal, starlight : float
-        Factors of airglow at a mean solar flux, of zodiacal light, and of the light of faint
-        stars; 0 leaves them out.
+    airglow, zodiacal : float
+        Factors of airglow at a mean solar flux and of zodiacal light; 0 leaves them out.
+    city : float
+        Luminance by lamps in the zenith. [cd m⁻²]
+    city_azimuth : float or None
+        Compass bearing of the city, which is all around by default. [rad]
 
     Attributes
     ----------
@@ -51,18 +52,21 @@ class NightDome:
         *,
         airglow: float = 1.0,
         zodiacal: float = 1.0,
-        starlight: float = 1.0,
+        city: float = 0.0,
+        city_azimuth: float | None = None,
     ) -> None:
         self._sky = sky
-        self._air = air or NightAir(sky, has_airglow=airglow > 0.0)
+        self._air = air or NightAir(sky, has_airglow=airglow > 0.0, has_city=city > 0.0)
         self.zenith_horizon = self._air.zenith_horizon
-        lights = []
-        if starlight > 0.0:
-            lights.append(self._starlight(frame, starlight))
+        glows = [(faint_stars(frame, sky.wavelengths), 1.0)]
         if zodiacal > 0.0:
-            lights += self._zodiacal(frame, zodiacal)
-        self.xyz = self._seen(lights)
+            glows.append((zodiacal_glow(frame, sky), zodiacal))
+        self.xyz = self._seen(glows)
         self.xyz += (airglow * MEAN_AIRGLOW * self._air.airglow)[:, None]
+        if city > 0.0:
+            around = toward_city(self._air.vectors, city_azimuth)
+            around[ABOVE:] = 1.0
+            self.xyz += city * self._air.city[:, None] * around[..., None]
 
     @property
     def zenith_luminance(self) -> float:
@@ -76,39 +80,17 @@ class NightDome:
         ring = self.xyz[:ABOVE, :, 1].mean(axis=1) * np.sin(zenith)
         return float(2.0 * math.pi * np.trapezoid(ring * np.maximum(np.cos(zenith), 0.0), zenith))
 
-    def _seen(self, lights: list[tuple[Array, Array]]) -> Array:
-        """XYZ of sources at infinity, each a table (row, bearing) and a spectrum."""
+    def _seen(self, glows: list[tuple[Glow, float]]) -> Array:
+        """XYZ of lights at infinity, each with its factor."""
         air = self._air
-        theta = np.linspace(0.0, 0.5 * math.pi, STEPS)
-        rings = np.zeros((STEPS, self._sky.wavelengths.size))
         xyz = np.zeros((*air.vectors.shape[:2], 3))
-        for light, spectrum in lights:
-            mean = np.interp(theta, air.zenith[:ABOVE], light[:ABOVE].mean(axis=1))
-            rings += mean[:, None] * spectrum
-            direct = (air.passing * spectrum) @ air.weights
-            for channel in range(3):
-                xyz[..., channel] += light * direct[:, channel, None]
-        if lights:
-            xyz += (air.scattered(rings, self._sky.workers) @ air.weights)[:, None]
-        return xyz
-
-    def _starlight(self, frame: CelestialFrame, factor: float) -> tuple[Array, Array]:
-        to_galaxy = TO_GALAXY @ frame.rotation.T
-        light = factor * starlight(self._air.vectors @ to_galaxy.T)
-        return light, starlight_spectrum(self._sky.wavelengths)
-
-    def _zodiacal(self, frame: CelestialFrame, factor: float) -> list[tuple[Array, Array]]:
-        to_ecliptic = TO_ECLIPTIC @ frame.rotation.T
-        x, y, z = np.moveaxis(self._air.vectors @ to_ecliptic.T, -1, 0)
-        sun = to_ecliptic @ self._sky.sun_direction
-        longitude = np.arctan2(y, x) - math.atan2(sun[1], sun[0])
-        latitude = np.arcsin(np.clip(z, -1.0, 1.0))
-        star = self._sky.planet.star
-        distance = self._sky.star.distance / ASTRONOMICAL_UNIT
-        light = factor * zodiacal_light(longitude, latitude) * distance ** (-FALL)
-        wavelengths = self._sky.wavelengths
-        sunlight = star_irradiance(star, wavelengths)
-        sunlight = sunlight / np.interp(REFERENCE, wavelengths, sunlight)
-        near, far = zodiacal_colours(wavelengths) * sunlight
-        share = far_share(longitude, latitude)
-        return [(light * (1.0 - share), near), (light * share, far)]
+        rings = np.zeros((STEPS, self._sky.wavelengths.size))
+        for glow, factor in glows:
+            parts = factor * glow.brightness(air.vectors)
+            rings += air.rings(parts, glow.spectra)
+            for light, spectrum in zip(parts, glow.spectra, strict=True):
+                direct = (air.passing * spectrum) @ air.weights
+                for channel in range(3):
+                    xyz[..., channel] += light * direct[:, channel, None]
+        around: Array = air.scattered(rings, self._sky.workers) @ air.weights
+        return xyz + around[:, None]

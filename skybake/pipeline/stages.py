@@ -34,7 +34,7 @@ class KeptStages(Stages):
     def __init__(self, most: int) -> None:
         self._spectral: Kept[TableKey, SpectralTable] = Kept(most)
         self._folded: Kept[tuple[TableKey, bytes], FoldedTable] = Kept(2 * most)
-        self._night_air: Kept[tuple[str, float, bool], NightAir] = Kept(most)
+        self._night_air: Kept[tuple[str, float, bool, bool], NightAir] = Kept(most)
 
     def spectral_table(self, sky: Sky, *, finely: bool = False) -> SpectralTable:
         """Light around the observer in all wavelengths."""
@@ -47,11 +47,13 @@ class KeptStages(Stages):
         key = _table_key(sky, finely), rgb_weights.tobytes()
         return self._folded.get(key, lambda: make(sky, rgb_weights, finely=finely))
 
-    def night_air(self, sky: Sky, *, has_airglow: bool) -> NightAir:
+    def night_air(self, sky: Sky, *, has_airglow: bool, has_city: bool) -> NightAir:
         """Return what of the night over the observer no hour changes."""
         make = super().night_air
-        key = atmosphere_key(sky.medium, sky.table_method), sky.altitude, has_airglow
-        return self._night_air.get(key, lambda: make(sky, has_airglow=has_airglow))
+        key = atmosphere_key(sky.medium, sky.table_method), sky.altitude, has_airglow, has_city
+        return self._night_air.get(
+            key, lambda: make(sky, has_airglow=has_airglow, has_city=has_city)
+        )
 
 
 def _table_key(sky: Sky, finely: bool) -> TableKey:

@@ -77,6 +77,13 @@ class ExtendedSky:
         diffuse = trace_rays(lit, start, mu, mu_s, nu, workers=workers).diffuse
         return diffuse[:, : self._wavelengths].astype(np.float64)
 
+    def ground_radiance(self, source: Array) -> Array:
+        """Radiance of the ground below a source, as of `scattered`, shape (wavelength,)."""
+        albedo = self._atmosphere.medium.ground_albedo
+        irradiance = self._field_of(source).ground[0, : self._wavelengths]
+        radiance: Array = albedo * irradiance / math.pi
+        return radiance
+
     def passing(self, mu: Array) -> Array:
         """Share of a wide source's light that comes straight, or by forward peaks alone.
 
