@@ -19,7 +19,7 @@ from skybake.image.night_figures import surface_magnitude
 from skybake.inspect.probe import COLUMNS, Directions
 from skybake.night.air import NightAir, lines_xyz
 from skybake.night.airglow import airglow_layers
-from skybake.night.city import ground_response, lamp_spectrum, toward_city
+from skybake.night.city import ground_response, lamp_channels, toward_city
 from skybake.night.dome import MEAN_AIRGLOW
 from skybake.night.glows import Glow, faint_stars, zodiacal_glow
 from skybake.optics.medium import Array
@@ -101,7 +101,7 @@ def airglow(probed: Probed) -> Component | None:
     for layer in airglow_layers():
         seen = air.layer_directly(layer, probed.zenith, passing)
         seen += air.sources.scattered(mu, air.layer_from_ground(layer, theta), sky.workers)
-        xyz += factor * lines_xyz(layer, sky.wavelengths, seen)
+        xyz += factor * lines_xyz(layer, air.channels, seen)
         per_nanometre = _spread(layer.wavelengths, layer.radiance, sky.wavelengths)
         radiance += factor * seen * per_nanometre
     return Component(radiance, xyz)
@@ -110,16 +110,18 @@ def airglow(probed: Probed) -> Component | None:
 def zodiacal(probed: Probed) -> Component | None:
     """Sunlight that dust between the planets scatters."""
     night = probed.night
-    if night.frame is None or night.zodiacal == 0.0:
+    if night.frame is None or probed.air is None or night.zodiacal == 0.0:
         return None
-    return _of_glow(probed, zodiacal_glow(night.frame, probed.sky), night.zodiacal)
+    glow = zodiacal_glow(night.frame, probed.sky, probed.air.channels)
+    return _of_glow(probed, probed.air, glow, night.zodiacal)
 
 
 def starlight(probed: Probed) -> Component | None:
     """Light of stars that are not drawn singly."""
-    if probed.night.frame is None:
+    if probed.night.frame is None or probed.air is None:
         return None
-    return _of_glow(probed, faint_stars(probed.night.frame, probed.sky.wavelengths), 1.0)
+    glow = faint_stars(probed.night.frame, probed.air.channels)
+    return _of_glow(probed, probed.air, glow, 1.0)
 
 
 def city(probed: Probed) -> Component | None:
@@ -129,7 +131,7 @@ def city(probed: Probed) -> Component | None:
         return None
     zenith = np.concatenate([[0.0], probed.zenith])
     glow = ground_response(sky, zenith, sky.workers)
-    glow = glow * lamp_spectrum(sky.wavelengths, air.weights[:, 1])
+    glow = glow * lamp_channels(air.channels)
     glow = glow / (glow[0] @ air.weights[:, 1])
     around = toward_city(probed.vectors, night.city_azimuth)
     around = np.where(probed.zenith <= air.zenith_horizon, around, 0.0)
@@ -199,6 +201,8 @@ def probe_components(
         sun_distance=sun_distance,
         moon=moon,
     )
+    if planet.rendering != "spectral":
+        raise InputError("components: must be of a world in wavelengths, got one in RGB")
     if planet.clouds:
         raise InputError("components: must be of a world without clouds")
     if sky.eclipse is not None:
@@ -226,10 +230,7 @@ def probe_components(
     return out.getvalue()
 
 
-def _of_glow(probed: Probed, glow: Glow, factor: float) -> Component | None:
-    air = probed.air
-    if air is None:
-        return None
+def _of_glow(probed: Probed, air: NightAir, glow: Glow, factor: float) -> Component:
     mu = np.cos(probed.zenith)
     here = np.einsum("pd,pw->dw", glow.brightness(probed.vectors), glow.spectra)
     rings = air.rings(glow.brightness(air.vectors), glow.spectra)

@@ -7,10 +7,11 @@ import math
 import numpy as np
 
 from skybake.angles import direction_from_angles
-from skybake.colour.observer import LUMINOUS_EFFICACY, load_observer, xyz_weights
+from skybake.colour.observer import LUMINOUS_EFFICACY, load_observer
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.night.airglow import Layer, airglow_layers, path_through
-from skybake.night.city import ground_response, lamp_spectrum
+from skybake.night.channels import Channels
+from skybake.night.city import ground_response, lamp_channels
 from skybake.optics.medium import Array
 from skybake.sky.extended import STEPS, ExtendedSky
 from skybake.sky.sky import Sky
@@ -23,8 +24,6 @@ BEARINGS = 720
 
 NODES_ABOVE, NODES_BELOW = 48, 16
 """Zenith angles at which scattered light is found, which is smooth between."""
-
-_EVERYWHERE = np.array([300.0, 900.0])
 
 
 class NightAir:
@@ -49,8 +48,10 @@ class NightAir:
         Where the table looks, from north clockwise: +Y up, -Z north, +X east.
     passing : ndarray of float64, shape (row, wavelength)
         As of `ExtendedSky`.
-    weights : ndarray of float64, shape (wavelength, 3)
-        XYZ [cd m⁻²] is the spectral radiance times these.
+    channels : Channels
+        How spectra are held.
+    weights : ndarray of float64, shape (channel, 3)
+        XYZ [cd m⁻²] is the spectral radiance, as channels hold it, times these.
     airglow : ndarray of float64, shape (row, 3)
         XYZ of airglow at the level of its table. [cd m⁻²]
     city : ndarray of float64, shape (row, 3)
@@ -61,22 +62,21 @@ class NightAir:
         skylight, medium = sky.skylight, sky.skylight.atmosphere.medium
         self._radius, self._bottom = skylight.radius, medium.r_bottom
         self.sources = ExtendedSky(skylight.atmosphere, self._radius)
-        self._wavelengths = sky.wavelengths
+        self.channels = Channels(sky)
         self.zenith_horizon = math.pi - math.asin(min(self._bottom / self._radius, 1.0))
         self.zenith = row_zeniths(self.zenith_horizon)
         self._nodes, self._between = self._node_rows(is_smooth=self._radius < medium.r_top)
         bearing = 2.0 * math.pi * np.arange(BEARINGS) / BEARINGS
         self.vectors = direction_from_angles(bearing, 0.5 * math.pi - self.zenith[:, None])
         self.passing = self.sources.passing(np.cos(self.zenith))
-        flat = np.ones_like(_EVERYWHERE)
-        self.weights = xyz_weights(sky.wavelengths, _EVERYWHERE, flat)
+        self.weights = self.channels.weights
         self.airglow = np.zeros((ABOVE + BELOW, 3))
         if has_airglow:
             theta = np.linspace(0.0, 0.5 * math.pi, STEPS)
             for layer in airglow_layers():
                 seen = self.scattered(self.layer_from_ground(layer, theta), sky.workers)
                 seen += self.layer_directly(layer, self.zenith, self.passing)
-                self.airglow += lines_xyz(layer, self._wavelengths, seen)
+                self.airglow += lines_xyz(layer, self.channels, seen)
         self.city = np.zeros((ABOVE + BELOW, 3))
         if has_city:
             self.city = self._city(sky)
@@ -110,7 +110,7 @@ class NightAir:
         """XYZ of the glow of a city, and of the ground that it lights, shape (row, 3)."""
         zenith = self.zenith[:ABOVE]
         glow = ground_response(sky, zenith, sky.workers)
-        glow = glow * lamp_spectrum(sky.wavelengths, self.weights[:, 1])
+        glow = glow * lamp_channels(self.channels)
         on_plane = np.sin(zenith) * np.maximum(np.cos(zenith), 0.0)
         irradiance = 2.0 * math.pi * np.trapezoid(glow * on_plane[:, None], zenith, axis=0)
         albedo = sky.skylight.atmosphere.medium.ground_albedo
@@ -150,16 +150,16 @@ class NightAir:
         return seen
 
 
-def lines_xyz(layer: Layer, wavelengths: Array, seen: Array) -> Array:
+def lines_xyz(layer: Layer, channels: Channels, seen: Array) -> Array:
     """XYZ of the lines of a layer, shape (ray, 3).
 
     Parameters
     ----------
     layer : Layer
         Whose lines.
-    wavelengths : ndarray of float64, shape (wavelength,)
-        [nm]
-    seen : ndarray of float64, shape (ray, wavelength)
+    channels : Channels
+        Of the air.
+    seen : ndarray of float64, shape (ray, channel)
         What is seen over the layer's radiance in the zenith from below.
     """
     # Each line has its own colour, and of the air only what it does at its wavelength.
@@ -168,7 +168,7 @@ def lines_xyz(layer: Layer, wavelengths: Array, seen: Array) -> Array:
         [np.interp(layer.wavelengths, nodes, bar, left=0.0, right=0.0) for bar in bars.T],
         axis=1,
     )
-    at_lines = np.stack([np.interp(layer.wavelengths, wavelengths, row) for row in seen])
+    at_lines = channels.at(layer.wavelengths, seen)
     xyz: Array = LUMINOUS_EFFICACY * (at_lines * layer.radiance) @ colours
     return xyz
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from skybake.jit.workers import ALL_CPUS, Workers
+from skybake.night.channels import Channels
 from skybake.optics.medium import Array
 from skybake.scattering.atmosphere import load_atmosphere
 from skybake.sky.extended import STEPS, ExtendedSky
@@ -31,24 +32,17 @@ _SODIUM = (
 _LED = ((450.0, 24.0, 1.2), (545.0, 90.0, 0.45), (600.0, 120.0, 0.95))
 
 
-def lamp_spectrum(wavelengths: Array, luminous: Array) -> Array:
-    """Spectral radiance of a ground that lamps light, of 1 cd/m2.
+def lamp_channels(channels: Channels) -> Array:
+    """Spectral radiance of a ground that lamps light, of 1 cd/m2, shape (channel,).
 
-    Parameters
-    ----------
-    wavelengths : ndarray of float64, shape (wavelength,)
-        [nm]
-    luminous : ndarray of float64, shape (wavelength,)
-        Luminance is the spectral radiance times these.
-
-    Returns
-    -------
-    ndarray of float64, shape (wavelength,)
-        Half of its luminance by high-pressure sodium lamps and half by white LED of 4000 K, in
-        bands as wide as the wavelengths are apart. [W m⁻² sr⁻¹ nm⁻¹]
+    Half of its luminance is that of high-pressure sodium lamps and half of white LED of 4000 K, in
+    bands as wide as wavelengths are apart, see docs/night.md.
     """
-    sodium, led = (_bands(wavelengths, each) for each in (_SODIUM, _LED))
-    return 0.5 * sodium / (sodium @ luminous) + 0.5 * led / (led @ luminous)
+    wavelengths = channels.wavelengths
+    luminous = channels.weights[:, 1]
+    sodium, led = (channels.hold(_bands(wavelengths, each)) for each in (_SODIUM, _LED))
+    lamps: Array = 0.5 * sodium / (sodium @ luminous) + 0.5 * led / (led @ luminous)
+    return lamps
 
 
 def ground_response(sky: Sky, zenith: Array, workers: Workers = ALL_CPUS) -> Array:

@@ -58,9 +58,9 @@ class NightDome:
         self._sky = sky
         self._air = air or NightAir(sky, has_airglow=airglow > 0.0, has_city=city > 0.0)
         self.zenith_horizon = self._air.zenith_horizon
-        glows = [(faint_stars(frame, sky.wavelengths), 1.0)]
+        glows = [(faint_stars(frame, self._air.channels), 1.0)]
         if zodiacal > 0.0:
-            glows.append((zodiacal_glow(frame, sky), zodiacal))
+            glows.append((zodiacal_glow(frame, sky, self._air.channels), zodiacal))
         self.xyz = self._seen(glows)
         self.xyz += (airglow * MEAN_AIRGLOW * self._air.airglow)[:, None]
         if city > 0.0:

@@ -10,6 +10,7 @@ import numpy as np
 
 from skybake.constants import ASTRONOMICAL_UNIT
 from skybake.ephemeris.celestial import TO_ECLIPTIC, CelestialFrame
+from skybake.night.channels import Channels
 from skybake.night.milky_way import TO_GALAXY, starlight, starlight_spectrum
 from skybake.night.zodiacal import FALL, REFERENCE, far_share, zodiacal_colours, zodiacal_light
 from skybake.optics.medium import Array
@@ -22,8 +23,8 @@ class Glow(NamedTuple):
 
     Attributes
     ----------
-    spectra : ndarray of float64, shape (part, wavelength)
-        Of its parts.
+    spectra : ndarray of float64, shape (part, channel)
+        Of its parts, as `Channels` hold them.
     brightness : callable
         Returns how much of each part, (part, ...), comes from unit vectors in the axes of maps,
         (..., 3); the product with its spectrum is a radiance [W m⁻² sr⁻¹ nm⁻¹].
@@ -33,17 +34,18 @@ class Glow(NamedTuple):
     brightness: Callable[[Array], Array]
 
 
-def faint_stars(frame: CelestialFrame, wavelengths: Array) -> Glow:
+def faint_stars(frame: CelestialFrame, channels: Channels) -> Glow:
     """Return the light of stars that are not drawn singly."""
     to_galaxy = TO_GALAXY @ frame.rotation.T
 
     def brightness(vectors: Array) -> Array:
         return starlight(vectors @ to_galaxy.T)[None]
 
-    return Glow(starlight_spectrum(wavelengths)[None], brightness)
+    spectrum = starlight_spectrum(channels.wavelengths)
+    return Glow(channels.hold(spectrum[None]), brightness)
 
 
-def zodiacal_glow(frame: CelestialFrame, sky: Sky) -> Glow:
+def zodiacal_glow(frame: CelestialFrame, sky: Sky, channels: Channels) -> Glow:
     """Return the zodiacal light about the sun of a sky."""
     to_ecliptic = TO_ECLIPTIC @ frame.rotation.T
     sun = to_ecliptic @ sky.sun_direction
@@ -57,6 +59,7 @@ def zodiacal_glow(frame: CelestialFrame, sky: Sky) -> Glow:
         share = far_share(longitude, latitude)
         return np.stack([light * (1.0 - share), light * share])
 
-    sunlight = star_irradiance(sky.planet.star, sky.wavelengths)
-    sunlight = sunlight / np.interp(REFERENCE, sky.wavelengths, sunlight)
-    return Glow(zodiacal_colours(sky.wavelengths) * sunlight, brightness)
+    wavelengths = channels.wavelengths
+    sunlight = star_irradiance(sky.planet.star, wavelengths)
+    sunlight = sunlight / np.interp(REFERENCE, wavelengths, sunlight)
+    return Glow(channels.hold(zodiacal_colours(wavelengths) * sunlight), brightness)

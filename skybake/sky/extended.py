@@ -12,7 +12,7 @@ from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.medium import Array
 from skybake.scattering.aureole import no_aureole
 from skybake.scattering.field import DiffuseField
-from skybake.scattering.grid import build_grid
+from skybake.scattering.grid import build_grid, coarsen_grid
 from skybake.scattering.harmonics import harmonics_at
 from skybake.scattering.horizon_peaks import no_horizon_peaks
 from skybake.scattering.ray import trace_rays
@@ -98,8 +98,11 @@ class ExtendedSky:
     def _straight(self) -> Straight:
         """What the unscattered source sends through each altitude of the field."""
         atmosphere, harmonics = self._atmosphere, self._atmosphere.field.harmonics
-        grid = build_grid(atmosphere.scaled)
         bottom = atmosphere.medium.r_bottom
+        grid, altitude = build_grid(atmosphere.scaled), atmosphere.field.altitude
+        if not np.array_equal(altitude, grid.altitude):
+            # A closure's field has nodes of its own.
+            grid = coarsen_grid(grid._replace(altitude=altitude), bottom, harmonics.order)
         passing, moments = [], []
         for altitude, mu, weight in zip(grid.altitude, grid.mu, grid.weight, strict=True):
             radius = bottom + max(altitude, LOWEST_EYE)
