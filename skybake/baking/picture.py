@@ -79,5 +79,5 @@ def open_picture(
         ev,
         None if white is None else chromaticity(white),
         shown,
-        partial(show_scene, scene, show, ev, white, shown),
+        partial(show_scene, scene, show, ev, white, shown, settings.vision),
     )

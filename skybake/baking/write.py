@@ -15,13 +15,12 @@ from skybake.baking.pixel_type import PixelType, fitting_pixel, value_range
 from skybake.formats.spec import Attribute, MapSpec
 from skybake.formats.whole_files import WholeFiles
 from skybake.image.light import (
-    STAR_ILLUMINANCE,
     Light,
     attributes_from_light,
     eclipse_attributes,
     light_of_scene,
     moon_attributes,
-    star_attributes,
+    night_attributes,
 )
 from skybake.image.parts import part_names
 from skybake.image.picture_settings import PictureSettings
@@ -71,8 +70,8 @@ class Baked(Light):
         What files state of an eclipse; empty without one.
     moonlight : mapping of str to Attribute
         What files state of the Moon as a light; empty without it.
-    star_illuminance : float or None
-        Of the horizontal by stars; None of a map without them. [lx]
+    night : mapping of str to Attribute
+        What files state of the lights of the night; empty by day.
     """
 
     files: tuple[Path, ...]
@@ -88,7 +87,7 @@ class Baked(Light):
     light_files: tuple[Path, ...] = ()
     eclipse: Mapping[str, Attribute] = field(default_factory=dict)
     moonlight: Mapping[str, Attribute] = field(default_factory=dict)
-    star_illuminance: float | None = None
+    night: Mapping[str, Attribute] = field(default_factory=dict)
 
 
 def bake(
@@ -193,13 +192,13 @@ def bake_scene(
     begin("pixels")
     light = light_of_scene(scene)
     eclipse = eclipse_attributes(scene)
-    from_below, starlight = _from_below(scene), star_attributes(scene)
+    from_below, night = _from_below(scene), night_attributes(scene)
     moonlight = moon_attributes(scene)
     described = None if light_files is None else map_light(scene, light)
     attributes = {
         **attributes_from_light(light),
         **({} if from_below is None else dict(zip(FROM_BELOW, from_below, strict=True))),
-        **starlight,
+        **night,
         **moonlight,
         **eclipse,
         **recipe_attributes(planet, settings),
@@ -270,7 +269,7 @@ def bake_scene(
         light_files=tuple(light_files or ()),
         eclipse=eclipse,
         moonlight=moonlight,
-        star_illuminance=starlight.get(STAR_ILLUMINANCE),
+        night=night,
     )
 
 

@@ -21,7 +21,7 @@ from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.medium import Array
 from skybake.preset import Planet
 from skybake.sky.disc import Disc
-from skybake.sky.pixels import allocate_pixels, fill_directions
+from skybake.sky.pixels import allocate_pixels, blacken_negative, fill_directions
 from skybake.sky.sky import Sky
 from skybake.sky.table import FoldedTable
 
@@ -162,7 +162,7 @@ class Scene:
             return None
         from skybake.image.night_glow import glow_over
 
-        return glow_over(self, night.frame)
+        return glow_over(self, night.frame, self._stages)
 
     @cached_property
     def moonlit(self) -> Moonlit | None:
@@ -303,9 +303,9 @@ class Scene:
     def without_negative(self, pixels: np.ndarray) -> np.ndarray:
         """Set pixels of negative luminance, which are rounding, to 0, and return them."""
         weights = self.luminance.astype(np.float32)
-        # The least value is found 50 times as fast as luminances are.
+        # The least value is found faster than luminances are.
         if pixels.min(initial=0.0) < 0.0 or weights.min() < 0.0:
-            pixels[pixels @ weights < 0.0] = 0.0
+            blacken_negative(weights, pixels)
         return pixels
 
     def clouds_over(self, cloudscape: Cloudscape) -> CloudsOver:

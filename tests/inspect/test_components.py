@@ -1,0 +1,82 @@
+"""Lights of the sky apart."""
+
+import csv
+import io
+import math
+
+import numpy as np
+import pytest
+
+from skybake.ephemeris.celestial import CelestialFrame
+from skybake.errors import InputError
+from skybake.image.night import Night
+from skybake.image.scene import Scene
+from skybake.image.settings import map_settings
+from skybake.inspect.components import COMPONENTS, probe_components
+from skybake.inspect.probe import probe, read_directions
+from skybake.preset import load_preset
+
+EARTH = load_preset("earth-clear")
+LOOK = read_directions("-", ["view_zenith_deg,relative_azimuth_deg", "0,0", "70,40", "130,10"])
+NIGHT = Night(CelestialFrame("earth", 2.0, -0.4))
+
+
+def components(night=NIGHT, *, sun=-50.0, planet=EARTH):
+    text = probe_components(planet, LOOK, night, sun_elevation=math.radians(sun), sun_azimuth=1.0)
+    found = {}
+    for row in csv.DictReader(io.StringIO(text)):
+        found.setdefault(row["component"], []).append(row)
+    return found
+
+
+def column(rows, name="luminance_cd_m2"):
+    return np.array([float(row[name]) for row in rows])
+
+
+@pytest.fixture(scope="module")
+def apart():
+    return components()
+
+
+def test_the_lights_of_a_night_add_up_to_what_a_map_shows(apart):
+    assert set(apart) == {"sun", "airglow", "zodiacal", "stars", "all"}
+    parts = sum(column(apart[name]) for name in apart if name != "all")
+    np.testing.assert_allclose(parts, column(apart["all"]), rtol=1e-5)
+    settings = map_settings(
+        size=(64, 32), sun_elevation=math.radians(-50.0), sun_azimuth=1.0, night=NIGHT, units="nits"
+    )
+    scene = Scene(EARTH, settings)
+    zenith, azimuth = LOOK.zenith[:, None], LOOK.azimuth[:, None]
+    shown = (scene.evaluate(zenith, azimuth, 1e-6) @ scene.luminance)[:, 0]
+    np.testing.assert_allclose(shown, column(apart["all"]), rtol=0.015)
+
+
+def test_magnitudes_are_those_of_the_luminances(apart):
+    expected = 12.58 - 2.5 * np.log10(column(apart["airglow"]))
+    np.testing.assert_allclose(column(apart["airglow"], "mag_arcsec2"), expected, rtol=1e-5)
+
+
+def test_radiances_of_airglow_hold_its_lines(apart):
+    # 557.7 nm between 561 and 539 nm.
+    row = {key: float(value) for key, value in apart["airglow"][0].items() if "radiance" in key}
+    values = list(row.values())
+    assert values[8] > 1.5 * values[6]
+
+
+def test_by_day_there_is_the_sun_alone_and_it_is_that_of_the_probe():
+    found = components(Night(), sun=20.0)
+    assert set(found) == {"sun", "all"}
+    plain = probe(EARTH, LOOK, sun_elevation=math.radians(20.0), sun_azimuth=1.0)
+    rows = list(csv.DictReader(io.StringIO(plain)))
+    np.testing.assert_allclose(column(found["sun"]), column(rows), rtol=1e-6)
+    name = next(key for key in rows[0] if key.startswith("radiance"))
+    np.testing.assert_allclose(column(found["sun"], name), column(rows, name), rtol=1e-6)
+
+
+def test_every_light_has_a_name_in_the_order_of_the_help():
+    assert tuple(COMPONENTS) == ("sun", "moon", "airglow", "zodiacal", "stars", "city")
+
+
+def test_clouds_are_refused():
+    with pytest.raises(InputError, match="components: must be of a world without clouds"):
+        components(planet=load_preset("earth-fair"))
