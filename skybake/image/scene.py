@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from skybake.image.moonlit import Moonlit
     from skybake.image.night_glow import NightGlow
     from skybake.night.stars import Stars
+    from skybake.sky.stokes_table import FoldedStokes
 
 
 class Scene:
@@ -47,6 +48,8 @@ class Scene:
         Threads that do the work.
     stages : Stages, optional
         What makes the table that pixels read, and may keep it.
+    sky : Sky, optional
+        What is seen, if it is known.
     """
 
     def __init__(
@@ -55,18 +58,20 @@ class Scene:
         settings: MapSettings,
         workers: Workers = ALL_CPUS,
         stages: Stages | None = None,
+        sky: Sky | None = None,
     ) -> None:
         self.planet = planet
         self.settings = settings
         self.workers = workers
-        self._stages = stages or Stages()
-        self.sky = Sky(
+        self.stages = stages or Stages()
+        self.sky = sky or Sky(
             planet,
             settings.lighting.sun_elevation,
             settings.view.altitude,
             sun_azimuth=settings.lighting.sun_azimuth,
             sun_distance=settings.lighting.sun_distance,
             moon=settings.lighting.moon,
+            wavelengths=settings.sensor.colour_wavelengths(),
             method=settings.lighting.method,
             workers=workers,
         )
@@ -133,7 +138,7 @@ class Scene:
             time=self.settings.clouds.time,
             quality=self.settings.clouds.quality,
             workers=self.workers,
-            keeps_light=self._stages.keeps_light_of_clouds,
+            keeps_light=self.stages.keeps_light_of_clouds,
         )
 
     @cached_property
@@ -162,7 +167,7 @@ class Scene:
             return None
         from skybake.image.night_glow import glow_over
 
-        return glow_over(self, night.frame, self._stages)
+        return glow_over(self, night.frame, self.stages)
 
     @cached_property
     def moonlit(self) -> Moonlit | None:
@@ -172,7 +177,14 @@ class Scene:
             return None
         from skybake.image.moonlit import Moonlit
 
-        return Moonlit(self, shown.moon, self._stages)
+        return Moonlit(self, shown.moon, self.stages)
+
+    @cached_property
+    def stokes(self) -> FoldedStokes:
+        """Linear polarisation of the sky, as tables of pixel values."""
+        from skybake.sky.stokes_table import fold_stokes
+
+        return fold_stokes(self.stages.stokes_table(self.sky), self.rgb_weights)
 
     def light_clouds(self) -> None:
         """Solve for the light of clouds, which takes longest, before pixels show them."""
@@ -212,7 +224,7 @@ class Scene:
     def _surveyed(self) -> Survey:
         return Survey(
             self.sky,
-            self._stages,
+            self.stages,
             rgb_weights=self.rgb_weights,
             xyz_weights=self.xyz_weights,
             luminance=self.luminance,

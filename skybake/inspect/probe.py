@@ -132,7 +132,7 @@ def probe(
         chromaticity.
     illuminance : bool, optional
         Repeat the illuminances by sun and sky in every row.
-    method : {"full", "hillaire", "march", "reference"}, optional
+    method : {"full", "scalar", "hillaire", "march", "reference"}, optional
         `reference` traces paths and adds the standard errors.
     samples : int, optional
         Paths for each direction and wavelength of the reference.
