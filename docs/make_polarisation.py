@@ -217,7 +217,7 @@ def difference_colours(percent: np.ndarray) -> np.ndarray:
 
 
 SPHERES = (256, 192)
-SAMPLES = 36
+SAMPLES = 64
 
 
 def spheres() -> None:
@@ -227,7 +227,7 @@ def spheres() -> None:
     wavelengths = np.array(DEFAULT_WAVELENGTHS[::2])
     grey, twin = metamers(wavelengths)
     tiles = []
-    for sun in (40.0, 0.5):
+    for sun in (40.0, 1.5):
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "sky.exr"
             settings = skybake.map_settings(
@@ -269,11 +269,12 @@ def spheres() -> None:
 def metamers(wavelengths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return a grey paint, and one of another spectrum that looks the same under D65."""
     nodes, xyz_bar = load_observer()
-    seen = np.stack([np.interp(wavelengths, nodes, each) for each in xyz_bar.T], axis=1)
-    seen *= np.interp(wavelengths, nodes, load_d65())[:, None]
-    # What an eye does not see of three bands of reflectance.
-    bands = sum(np.exp(-(((wavelengths - at) / 18.0) ** 2)) for at in (445.0, 540.0, 600.0))
-    unseen = bands - seen @ np.linalg.lstsq(seen, bands, rcond=None)[0]
+    curves = np.stack([np.interp(wavelengths, nodes, each) for each in xyz_bar.T], axis=1)
+    seen = curves * np.interp(wavelengths, nodes, load_d65())[:, None]
+    # What most differs in the light of a low sun, of which that is left out which D65 shows.
+    low = seen * np.exp(-2.2 * (550.0 / wavelengths[:, None]) ** 4)
+    wanted = low[:, 1] - low[:, 0]
+    unseen = wanted - seen @ np.linalg.lstsq(seen, wanted, rcond=None)[0]
     grey = np.full(wavelengths.size, 0.5)
     return grey, grey + 0.48 * unseen / np.abs(unseen).max()
 
@@ -295,7 +296,7 @@ def picture(mitsuba: object, light: np.ndarray, grey: np.ndarray, twin: np.ndarr
             "sensor": {
                 "type": "perspective",
                 "fov": 34,
-                "to_world": transform.look_at([0, 1.5, -7.5], [0, 0.85, 0], [0, 1, 0]),
+                "to_world": transform.look_at([0, 1.5, 7.5], [0, 0.85, 0], [0, 1, 0]),
                 "film": {
                     "type": "hdrfilm",
                     "width": SPHERES[0],
@@ -312,10 +313,10 @@ def picture(mitsuba: object, light: np.ndarray, grey: np.ndarray, twin: np.ndarr
             },
             "grey": {
                 "type": "sphere",
-                "center": [-1.15, 1, 0],
+                "center": [1.15, 1, 0],
                 "bsdf": _paint(three(grey)),
             },
-            "twin": {"type": "sphere", "center": [1.15, 1, 0], "bsdf": _paint(three(twin))},
+            "twin": {"type": "sphere", "center": [-1.15, 1, 0], "bsdf": _paint(three(twin))},
         }
     )
     return np.array(mitsuba.render(found))[..., :count]

@@ -14,7 +14,13 @@ from skybake.colour.space import ColourSpace
 from skybake.errors import InputError
 from skybake.formats.spec import CAMERA, POLARIZER, Attribute, MapSpec
 from skybake.formats.spectral_exr import spectral_attributes, stokes_channel
-from skybake.image.bands import BandScene, camera_scene, check_sensor, spectral_scenes
+from skybake.image.bands import (
+    BandScene,
+    camera_scene,
+    check_sensor,
+    moon_lights_air,
+    spectral_scenes,
+)
 from skybake.image.layers import RGB, Pixels
 from skybake.image.polarised import (
     REFERENCE,
@@ -155,6 +161,8 @@ def bands_of(scene: Scene) -> Bands:
     if sensor.is_polarised:
         what = "stokes" if sensor.stokes else "polarizer"
         check_polarisation(scene.planet, scene.settings, what)
+        if moon_lights_air(scene):
+            raise InputError(f"{what}: needs a sky that the Moon does not light, got moonlight")
     seen = scene if sensor.response is None else camera_scene(scene, sensor.response)
     return Bands(seen, sensor, [] if sensor.wavelengths is None else spectral_scenes(scene))
 

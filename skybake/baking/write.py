@@ -198,9 +198,8 @@ def bake_scene(
         scene.light_clouds()
     begin("pixels")
     light = light_of_scene(scene)
-    eclipse = eclipse_attributes(scene)
+    eclipse, moonlight = eclipse_attributes(scene), moon_attributes(scene)
     from_below, night = _from_below(scene), night_attributes(scene)
-    moonlight = moon_attributes(scene)
     described = None if light_files is None else map_light(scene, light)
     attributes = {
         **attributes_from_light(light),
@@ -218,7 +217,6 @@ def bake_scene(
     largest, smallest = bands.value_range(peak) if bands else value_range(scene, peak)
     warnings = scene_warnings(scene, peak) + (bands.warnings() if bands else [])
     stored = fitting_pixel(encoding.pixel, largest, smallest) if pixel is None else pixel
-
     spec = partial(_spec, settings=settings, stored=stored, attributes=attributes, bands=bands)
     with ExitStack() as stack:
         if files is None:

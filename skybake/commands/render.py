@@ -176,8 +176,8 @@ def requested_map(
         options,
         **where,
         night=night_from_options(options, moment),
-        moonlight=moonlight_from_options(options, moment, where),
         sensor=sensor_from_options(options),
+        moonlight=moonlight_from_options(options, moment, where),
     )
 
     from skybake.image.sun_distance import sun_distance

@@ -236,8 +236,8 @@ def _plan_from_options(context: click.Context) -> Plan:
         clouds_quality=options["clouds_quality"],
         moon=moon_by_place(options),
         night=night_from_options(options),
-        moonlight=moonlight_of_sequence(options),
         sensor=sensor_from_options(options),
+        moonlight=moonlight_of_sequence(options),
     )
     changes = changes_from_options(context)
 

@@ -76,6 +76,10 @@ class BandScene(Scene):
         return self._weights
 
     @property
+    def moonlit(self) -> None:
+        """No Moon, whose light is known to an eye alone."""
+
+    @property
     def luminance(self) -> Array:
         """Weights by which it is judged whether values are below 0, shape (3,)."""
         return np.full(CHANNELS, 1.0 / CHANNELS)
@@ -164,17 +168,30 @@ def _sky_at(scene: Scene, wavelengths: Array) -> Sky:
 
 
 def _check_night(what: str, scene: Scene) -> None:
-    if scene.stars is not None or scene.night_glow is not None:
-        raise InputError(
-            f"{what}: needs a map without lights of the night, which are known to an eye alone; "
-            "got some, which night off leaves out"
-        )
+    """Refuse lights that are known to an eye alone."""
+    lights = {
+        "stars": scene.stars is not None,
+        "a glow of the night": scene.night_glow is not None,
+        "the Moon": "moon" in scene.layer_names or moon_lights_air(scene),
+    }
+    for name, is_there in lights.items():
+        if is_there:
+            raise InputError(
+                f"{what}: needs a map without lights of the night, which are known to an eye "
+                f"alone, got {name}; night off and moon exclude leave them out"
+            )
+
+
+def moon_lights_air(scene: Scene) -> bool:
+    """Whether moonlight that the air scatters is in a map."""
+    return scene.moonlit is not None and scene.moonlit.lights_air
 
 
 class _SharedTables(Stages):
     """Stages that trace the rays of a sky once for all of its channels."""
 
     def __init__(self, stages: Stages) -> None:
+        super().__init__(keeps_light_of_clouds=stages.keeps_light_of_clouds)
         self._stages = stages
         self._tables: dict[tuple[int, bool], SpectralTable] = {}
         self._stokes: dict[int, StokesTable] = {}

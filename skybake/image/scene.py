@@ -170,6 +170,13 @@ class Scene:
         return glow_over(self, night.frame, self.stages)
 
     @cached_property
+    def stokes(self) -> FoldedStokes:
+        """Linear polarisation of the sky, as tables of pixel values."""
+        from skybake.sky.stokes_table import fold_stokes
+
+        return fold_stokes(self.stages.stokes_table(self.sky), self.rgb_weights)
+
+    @cached_property
     def moonlit(self) -> Moonlit | None:
         """The Moon over the observer, or None where there is none."""
         shown = self.settings.moonlight
@@ -178,13 +185,6 @@ class Scene:
         from skybake.image.moonlit import Moonlit
 
         return Moonlit(self, shown.moon, self.stages)
-
-    @cached_property
-    def stokes(self) -> FoldedStokes:
-        """Linear polarisation of the sky, as tables of pixel values."""
-        from skybake.sky.stokes_table import fold_stokes
-
-        return fold_stokes(self.stages.stokes_table(self.sky), self.rgb_weights)
 
     def light_clouds(self) -> None:
         """Solve for the light of clouds, which takes longest, before pixels show them."""

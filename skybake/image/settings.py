@@ -304,9 +304,8 @@ def map_settings(
     for name, kind in (("view", View), ("lighting", Lighting), ("encoding", Encoding)):
         names = {one.name for one in fields(kind)}
         parts[name] = {key: values.pop(key) for key in names & values.keys()}
-    night = values.pop("night", Night())
+    night, sensor = values.pop("night", Night()), values.pop("sensor", Sensor())
     moonlight = values.pop("moonlight", Moonlight())
-    sensor = values.pop("sensor", Sensor())
     clouds = {own: values.pop(name) for name, own in _CLOUDS.items() if name in values}
     if isinstance(projection, str):
         size = (size,) if isinstance(size, int) else size

@@ -14,6 +14,7 @@ from skybake.optics.spectrum import check_range, eval_spectrum
 from skybake.optics.wigner import wigner
 from skybake.preset import (
     Absorber,
+    Aerosol,
     Gas,
     Phase,
     Planet,
@@ -32,14 +33,17 @@ def unpolarised_constituents(planet: Planet) -> list[str]:
     """Names of the constituents that scatter without a matrix, and count as unpolarised."""
     names = []
     for constituent in planet.constituents:
-        if isinstance(constituent, (Gas, Absorber)):
+        if isinstance(constituent, (Gas, Absorber)) or _is_known(constituent.phase):
             continue
-        phase = constituent.phase
-        if isinstance(phase, TabulatedPhase) and phase.polarisation is not None:
-            continue
-        if not isinstance(phase, RayleighPhase):
+        if isinstance(constituent, Aerosol) or any(constituent.scattering.values):
             names.append(constituent.name)
     return names
+
+
+def _is_known(phase: Phase) -> bool:
+    if isinstance(phase, TabulatedPhase):
+        return phase.polarisation is not None
+    return isinstance(phase, RayleighPhase)
 
 
 def build_matrix(phase: Phase, values: Array, wavelengths: Array) -> Array:

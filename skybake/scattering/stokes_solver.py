@@ -87,7 +87,7 @@ def _is_beyond_dipoles(scaled: ScaledMedium) -> bool:
     """Whether a constituent that scatters has moments beyond those of molecules."""
     scatters = scaled.medium.scattering.max(axis=1) > 0.0
     return bool(
-        np.abs(scaled.matrix_moments[scatters][:, :, DIPOLES + 1 :]).max(initial=0.0) > 1e-4
+        np.abs(scaled.matrix_moments[scatters][:, :, DIPOLES + 1 :]).max(initial=0.0) > NEGLIGIBLE
     )
 
 

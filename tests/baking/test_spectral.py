@@ -216,6 +216,34 @@ def test_other_wavelengths_are_wrong_usage(tmp_path, monkeypatch, text):
     assert listing(tmp_path) == []
 
 
+def test_frames_of_a_sequence_have_spectra_too(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    options = ("--frames", "1-2", "--sun", "20..30", "--size", "32", "--method", "hillaire")
+    result = invoke("sequence", *options, "--spectral", "450,600", "-o", "a.####.exr", "-q")
+    assert result.exit_code == 0, result.output
+    for number in (1, 2):
+        wavelengths, radiance = spectrum(tmp_path / f"a.{number:04}.exr")
+        assert wavelengths.tolist() == [450.0, 600.0]
+        assert radiance.max() > 0.01
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ("--moon-elevation", "20deg", "--sun", "10deg"),
+        ("--lst", "3h", "--lat", "30", "--sun", "-30"),
+    ],
+)
+def test_lights_that_an_eye_alone_knows_are_refused(tmp_path, monkeypatch, options):
+    monkeypatch.chdir(tmp_path)
+    result = invoke(
+        "render", "--size", "32", "--spectral", "500,600", "--method", "hillaire", *options, "-q"
+    )
+    assert result.exit_code == 1
+    assert "needs a map without lights of the night" in result.stderr
+    assert listing(tmp_path) == []
+
+
 @pytest.fixture
 def observer(tmp_path):
     """A camera whose channels are those of the observer."""
