@@ -345,3 +345,17 @@ def test_a_page_that_goes_away_after_its_picture_leaves_it_to_others(server):
     for _ in range(3):
         header, _ = view_of(server, {"sun": "24deg"})
         assert header.get("final"), header
+
+
+def test_a_picture_is_stopped_when_asked(server):
+    depth = str(0.4 + 1e-4 * (time.time() % 1000.0))
+
+    async def conversation(page):
+        slow = await page.ask({"preset": "mars"}, {"dust.optical_depth": depth})
+        answer, _ = await page.next()
+        await page.socket.send_json({"stop": "A"})
+        return answer, (await page.end(slow))[-1][0]
+
+    answer, end = talk(server, conversation)
+    assert answer["stage"] == "solving atmosphere"
+    assert end["cancelled"]
