@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from skybake.environment.load import load_environment
     from skybake.environment.resample import resample
     from skybake.ephemeris.celestial import CelestialFrame
+    from skybake.ephemeris.lit_moon import LitMoon, moon_by_hand
     from skybake.ephemeris.moment import Moment, TimeSpan, sun_at
     from skybake.ephemeris.moon import Moon
     from skybake.ephemeris.place import SITES, Place, find_place
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
     )
     from skybake.image.image import Image
     from skybake.image.light import Light
+    from skybake.image.moon_figures import MoonFigures
+    from skybake.image.moonlight import Moonlight
     from skybake.image.night import Night
     from skybake.image.picture_settings import PictureSettings
     from skybake.image.scene import Scene
@@ -126,10 +129,13 @@ __all__ = [
     "InputError",
     "Light",
     "Lighting",
+    "LitMoon",
     "MapLight",
     "MapSettings",
     "Moment",
     "Moon",
+    "MoonFigures",
+    "Moonlight",
     "Night",
     "Octahedral",
     "OutputError",
@@ -179,6 +185,7 @@ __all__ = [
     "load_environment",
     "load_preset",
     "map_settings",
+    "moon_by_hand",
     "plan_sequence",
     "preset_names",
     "resample",
@@ -220,10 +227,13 @@ _HOMES = {
     "InputError": "skybake.errors",
     "Light": "skybake.image.light",
     "Lighting": "skybake.image.settings",
+    "LitMoon": "skybake.ephemeris.lit_moon",
     "MapLight": "skybake.sidecar.map_light",
     "MapSettings": "skybake.image.settings",
     "Moment": "skybake.ephemeris.moment",
     "Moon": "skybake.ephemeris.moon",
+    "MoonFigures": "skybake.image.moon_figures",
+    "Moonlight": "skybake.image.moonlight",
     "Night": "skybake.image.night",
     "Octahedral": "skybake.projection",
     "OutputError": "skybake.errors",
@@ -274,6 +284,7 @@ _HOMES = {
     "load_environment": "skybake.environment.load",
     "load_preset": "skybake.preset",
     "map_settings": "skybake.image.settings",
+    "moon_by_hand": "skybake.ephemeris.lit_moon",
     "plan_sequence": "skybake.sequence.planning",
     "preset_names": "skybake.preset",
     "resample": "skybake.environment.resample",

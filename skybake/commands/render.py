@@ -14,6 +14,11 @@ from skybake.commands.memory import check_memory
 from skybake.commands.options import choices, values
 from skybake.commands.options.clouds import check_clouds, clouds_options
 from skybake.commands.options.maps import map_needs, map_options, map_settings
+from skybake.commands.options.moonlight import (
+    moonlight_from_options,
+    moonlight_needs,
+    moonlight_options,
+)
 from skybake.commands.options.night import (
     lst_option,
     night_from_options,
@@ -78,6 +83,7 @@ class RequestedMap(NamedTuple):
 @moment_options
 @sun_distance_option()
 @moon_options("--time")
+@moonlight_options
 @altitude_option()
 @night_options
 @lst_option
@@ -152,6 +158,7 @@ def requested_map(
         sun_distance_needs(options, is_timed=is_timed, time="--time"),
         moon_needs(options, is_timed=is_timed, time="--time"),
         night_needs(options, is_timed=is_timed, time="--time"),
+        moonlight_needs(options, is_timed=is_timed, time="--time"),
         map_needs(options),
         preview_needs(options),
     )
@@ -160,10 +167,12 @@ def requested_map(
         # A renderer that took the disc and the light would count the sun twice.
         options["sun_disc"] = "exclude"
     moment = moment_from_options(context)
+    where = positions(options, moment)
     settings = map_settings(
         options,
-        **positions(options, moment),
+        **where,
         night=night_from_options(options, moment),
+        moonlight=moonlight_from_options(options, moment, where),
     )
 
     from skybake.image.sun_distance import sun_distance
