@@ -131,14 +131,15 @@ def test_the_command_bakes_a_map_whose_pixels_equal_the_view(
 def test_the_python_snippet_bakes_the_same_file(server, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     options = {"preset": "mars-clear", "size": "32x16", "method": "hillaire"}
-    options |= {"time": "16:30", "site": "gale", "ls": "90"}
+    options |= {"time": "16:30", "site": "gale", "ls": "90", "white-balance": "5000K"}
     state = {"options": options, "set": {"dust.optical_depth": "0.1"}}
     made = server.json("/api/command", {"state": state, "output": "a.exr"})
     assert invoke(*shlex.split(made["command"])[1:]).exit_code == 0
-    written = Path("a.exr").read_bytes()
-    Path("a.exr").unlink()
+    written = [Path(name).read_bytes() for name in ("a.exr", "a.png")]
+    for name in ("a.exr", "a.png"):
+        Path(name).unlink()
     exec(made["python"], {})  # noqa: S102
-    assert Path("a.exr").read_bytes() == written
+    assert [Path(name).read_bytes() for name in ("a.exr", "a.png")] == written
 
 
 def test_the_preset_of_changes_makes_the_same_world(server, tmp_path):
