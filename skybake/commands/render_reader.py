@@ -168,7 +168,8 @@ class RenderReader:
     def _check_files(self, state: State) -> None:
         for name, text in typed_texts(state):
             if name != "preset" or text != self._preset:
-                check_within(self._folder, name, text)
+                with _messages(name):
+                    check_within(self._folder, name, text)
         for key, text in state.changes.items():
             check_within(self._folder, "set", f"{key}={text}")
 
