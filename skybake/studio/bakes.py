@@ -57,9 +57,9 @@ class Bakes:
         self._thread.submit(self._bake, number, request, path, cancel, tell)
         return number
 
-    def cancel(self, number: int) -> None:
+    def cancel(self, number: Any) -> None:
         """Stop a bake, if it is running or waiting."""
-        if number in self._running:
+        if isinstance(number, int) and number in self._running:
             self._running[number].set()
 
     def close(self) -> None:

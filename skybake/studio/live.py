@@ -81,6 +81,9 @@ class Live:
             if "cancel" in data:
                 self._bakes.cancel(data["cancel"])
                 return
+            if "stop" in data:
+                self._stop(str(data["stop"]))
+                return
             number = data.get("id")
             if type(number) is not int:
                 raise InputError(f"id: must be a whole number, got {number!r}")
@@ -101,6 +104,14 @@ class Live:
         self._waiting[tag] = view
         is_same = self._reader.is_same_world(running.state, view.state)
         running.supersede(has_same_world=is_same)
+
+    def _stop(self, tag: str) -> None:
+        """Stop the work on a tag's picture, and forget the request that waits for it."""
+        waiting = self._waiting.pop(tag, None)
+        if waiting is not None:
+            self.tell({"id": waiting.number, "cancelled": True})
+        if tag in self._running:
+            self._running[tag].cancel.set()
 
     def _start(self, tag: str, view: ViewRequest) -> None:
         self._running[tag] = view
