@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from skybake.baking.convert import Converted, convert
     from skybake.baking.orientation_chart import bake_orientation_chart
     from skybake.colour.space import ColourSpace
+    from skybake.commands.in_notebook import StudioFrame, studio
     from skybake.environment.environment import Environment
     from skybake.environment.load import load_environment
     from skybake.environment.resample import resample
@@ -160,6 +161,7 @@ __all__ = [
     "SkybakeError",
     "Spectrum",
     "Star",
+    "StudioFrame",
     "TableSettings",
     "TabulatedPhase",
     "TabulatedProfile",
@@ -187,6 +189,7 @@ __all__ = [
     "plan_sequence",
     "preset_names",
     "resample",
+    "studio",
     "sun_at",
 ]
 
@@ -257,6 +260,7 @@ _HOMES = {
     "SkybakeError": "skybake.errors",
     "Spectrum": "skybake.preset",
     "Star": "skybake.preset",
+    "StudioFrame": "skybake.commands.in_notebook",
     "TableSettings": "skybake.luts.settings",
     "TabulatedPhase": "skybake.preset",
     "TabulatedProfile": "skybake.preset",
@@ -284,6 +288,7 @@ _HOMES = {
     "plan_sequence": "skybake.sequence.planning",
     "preset_names": "skybake.preset",
     "resample": "skybake.environment.resample",
+    "studio": "skybake.studio",
     "sun_at": "skybake.ephemeris.moment",
 }
 

@@ -14,6 +14,7 @@ from skybake.commands.memory import check_memory
 from skybake.commands.options import values
 from skybake.commands.options.camera import (
     aim_option,
+    altitude_with,
     camera_from_file,
     camera_option,
     camera_units_option,
@@ -265,12 +266,7 @@ def _of_camera(
         options["fov"],
         width / max(height, 1),
     )
-    where["altitude"] += camera.position[1]
-    if where["altitude"] < 0.0:
-        raise InputError(
-            f"altitude: must be at least 0 m, got {where['altitude'] * 1e3:g} m with that of the "
-            "camera"
-        )
+    where["altitude"] = altitude_with(camera, where["altitude"])
     picture = Perspective.of_camera(camera, width)
     if size is not None and abs(picture.height - height) > 1:
         raise InputError(

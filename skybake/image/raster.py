@@ -31,6 +31,9 @@ and stars."""
 
 Evaluate = Callable[[np.ndarray, np.ndarray, np.ndarray], Pixels]
 
+LOOKS_AT_ONCE = 16
+"""Rows whose directions a thread finds at a time."""
+
 LIMB_SAMPLES = 16
 LIMB_COARSE = 0.05
 
@@ -171,9 +174,8 @@ _EVALUATE: dict[str, Callable[[Scene, Chart, int, int], Pixels]] = {
 
 
 def _smooth_pixels(scene: Scene, chart: Chart, first: int, last: int, evaluate: Evaluate) -> Pixels:
-    zenith, bearing = chart.angles(first, last)
+    zenith, bearing, footprint = _looks(scene, chart, first, last)
     azimuth = bearing - scene.sun_bearing
-    footprint = chart.footprints(first, last)
     pixels = evaluate(zenith, azimuth, footprint)
     limb = _limb(scene, zenith, footprint)
     if limb.any():
@@ -182,6 +184,26 @@ def _smooth_pixels(scene: Scene, chart: Chart, first: int, last: int, evaluate: 
     if nowhere is not None:
         pixels[nowhere] = 0.0
     return pixels
+
+
+def _looks(
+    scene: Scene, chart: Chart, first: int, last: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """As of a chart, found by all workers where each pixel has directions of its own."""
+    if chart.is_separable or last - first <= LOOKS_AT_ONCE:
+        return chart.looks(first, last)
+    found = {}
+
+    def work(begin: int, end: int) -> None:
+        found[begin] = chart.looks(first + begin, first + end)
+
+    scene.workers.run_rows(last - first, work, chunk=LOOKS_AT_ONCE)
+    # What all rows share is in each part.
+    zenith, bearing, footprint = (
+        each[0] if len(each[0]) < LOOKS_AT_ONCE else np.concatenate(each)
+        for each in zip(*(found[begin] for begin in sorted(found)), strict=True)
+    )
+    return zenith, bearing, footprint
 
 
 def _limb(scene: Scene, zenith: np.ndarray, footprint: np.ndarray) -> np.ndarray:

@@ -122,7 +122,8 @@ class Scene:
             return None
         from skybake.clouds.build import build_cloudscape
 
-        weights = self.xyz_weights / self.settings.encoding.white_luminance
+        # Of no exposure, so that all share the light.
+        weights = self.xyz_weights
         if self.sky.eclipse is not None:
             weights = weights * self.sky.eclipse.share_for_clouds[:, None]
         return build_cloudscape(
@@ -132,6 +133,7 @@ class Scene:
             time=self.settings.clouds.time,
             quality=self.settings.clouds.quality,
             workers=self.workers,
+            keeps_light=self._stages.keeps_light_of_clouds,
         )
 
     @cached_property
@@ -313,8 +315,9 @@ class Scene:
         def clear(zenith: Array, azimuth: Array, footprint: Array) -> np.ndarray:
             return self._evaluate(self.table, zenith, azimuth, footprint)
 
-        lighting, space = self.settings.lighting, self.settings.encoding.space
-        return CloudsOver(cloudscape, clear, lighting.sun_azimuth, space)
+        encoding = self.settings.encoding
+        azimuth = self.settings.lighting.sun_azimuth
+        return CloudsOver(cloudscape, clear, azimuth, encoding.space, encoding.white_luminance)
 
     def _evaluate(
         self, table: FoldedTable, zenith: Array, azimuth: Array, footprint: Array | float
