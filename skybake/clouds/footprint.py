@@ -55,6 +55,7 @@ def see_pixels(
     out: tuple[Floats, Floats],
     workers: Workers,
     count: float,
+    ends: Array | None = None,
 ) -> None:
     """Do what `see_layer` does, with the mean of `count` times `count` rays for each direction.
 
@@ -65,11 +66,12 @@ def see_pixels(
     has_more = _scattered(directions) < count - least
     for is_chosen, own in ((~has_more, least), (has_more, least + 1)):
         if is_chosen.all():
-            _see_several(field, light, eye, directions, marching, out, workers, own)
+            _see_several(field, light, eye, directions, marching, out, workers, own, ends)
         elif is_chosen.any():
             part = np.empty_like(out[0][is_chosen]), np.empty_like(out[1][is_chosen])
             chosen = np.ascontiguousarray(directions[is_chosen])
-            _see_several(field, light, eye, chosen, marching, part, workers, own)
+            nearest = None if ends is None else np.ascontiguousarray(ends[is_chosen])
+            _see_several(field, light, eye, chosen, marching, part, workers, own, nearest)
             out[0][is_chosen], out[1][is_chosen] = part
 
 

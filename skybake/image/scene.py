@@ -215,10 +215,8 @@ class Scene:
     @property
     def _is_lit_by_night(self) -> bool:
         """Whether the sky has other light than the sun's."""
-        return self.night_glow is not None or (
-            self.moonlit is not None
-            and (self.moonlit.lights_air or self.settings.moonlight.is_alone)
-        )
+        has_moonlight = self.moonlit is not None and self.moonlit.lights_air
+        return has_moonlight or self.night_glow is not None
 
     @cached_property
     def _surveyed(self) -> Survey:
@@ -299,18 +297,15 @@ class Scene:
 
     def evaluate_clear(self, zenith: Array, azimuth: Array, footprint: Array | float) -> np.ndarray:
         """Pixel values of the sky without clouds, see `evaluate`."""
-        pixels = self._sunlit(zenith, azimuth, footprint)
-        if self.night_glow is not None:
-            self.night_glow.add(zenith, azimuth, footprint, pixels)
-        if self.moonlit is not None:
-            self.moonlit.add(zenith, azimuth, footprint, pixels)
-        return pixels
-
-    def _sunlit(self, zenith: Array, azimuth: Array, footprint: Array | float) -> np.ndarray:
         if self.settings.moonlight.is_alone:
             shape = np.broadcast_shapes(zenith.shape, azimuth.shape)
-            return np.zeros((*shape, 3), np.float32)
-        return self.without_negative(self._evaluate(self.table, zenith, azimuth, footprint))
+            pixels = np.zeros((*shape, 3), np.float32)
+        else:
+            pixels = self.without_negative(self._evaluate(self.table, zenith, azimuth, footprint))
+        for light in (self.night_glow, self.moonlit):
+            if light is not None:
+                light.add(zenith, azimuth, footprint, pixels)
+        return pixels
 
     def without_negative(self, pixels: np.ndarray) -> np.ndarray:
         """Set pixels of negative luminance, which are rounding, to 0, and return them."""
