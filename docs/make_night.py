@@ -11,6 +11,7 @@ from PIL import Image
 
 import skybake
 from skybake.image.image import image_of_scene
+from skybake.image.moonlight import Moonlight
 from skybake.image.picture import code_values
 
 IMAGES = Path(__file__).parent / "images"
@@ -119,6 +120,7 @@ def contact_sheet() -> np.ndarray:
             sun_elevation=moment.sun_elevation,
             sun_azimuth=moment.sun_azimuth,
             night=skybake.Night(moment.celestial),
+            moonlight=Moonlight(moment.lit_moon),
         )
         row, column = height * (i // COLUMNS), width * (i % COLUMNS)
         tile = pipeline.image("earth", settings).picture()

@@ -19,6 +19,7 @@ from skybake.image.light import (
     attributes_from_light,
     eclipse_attributes,
     light_of_scene,
+    moon_attributes,
     night_attributes,
 )
 from skybake.image.parts import part_names
@@ -69,6 +70,8 @@ class Baked(Light):
         What files state of an eclipse; empty without one.
     night : mapping of str to Attribute
         What files state of the lights of the night; empty by day.
+    moonlight : mapping of str to Attribute
+        What files state of the Moon as a light; empty without it.
     """
 
     files: tuple[Path, ...]
@@ -84,6 +87,7 @@ class Baked(Light):
     light_files: tuple[Path, ...] = ()
     eclipse: Mapping[str, Attribute] = field(default_factory=dict)
     night: Mapping[str, Attribute] = field(default_factory=dict)
+    moonlight: Mapping[str, Attribute] = field(default_factory=dict)
 
 
 def bake(
@@ -189,11 +193,13 @@ def bake_scene(
     light = light_of_scene(scene)
     eclipse = eclipse_attributes(scene)
     from_below, night = _from_below(scene), night_attributes(scene)
+    moonlight = moon_attributes(scene)
     described = None if light_files is None else map_light(scene, light)
     attributes = {
         **attributes_from_light(light),
         **({} if from_below is None else dict(zip(FROM_BELOW, from_below, strict=True))),
         **night,
+        **moonlight,
         **eclipse,
         **recipe_attributes(planet, settings),
         **(attributes or {}),
@@ -263,6 +269,7 @@ def bake_scene(
         light_files=tuple(light_files or ()),
         eclipse=eclipse,
         night=night,
+        moonlight=moonlight,
     )
 
 

@@ -56,6 +56,7 @@ def see_pixels(
     out: tuple[Floats, Floats],
     workers: Workers,
     count: int,
+    ends: Array | None = None,
 ) -> None:
     """Do what `see_layer` does, with the mean of `count` times `count` rays for each direction."""
     finer = marching._replace(pixel=marching.pixel / count)
@@ -63,14 +64,14 @@ def see_pixels(
     if field.kind == SURFACE and above > 0.0:
         finer = finer._replace(pixel=min(finer.pixel, _BLUR * field.largest_blur / above))
     if count == 1:
-        see_layer(field, light, eye, directions, finer, out, workers)
+        see_layer(field, light, eye, directions, finer, out, workers, ends)
         return
     seen, passing = out
     seen[:], passing[:] = 0.0, 0.0
     weights = np.zeros(len(passing), np.float32)
     part = np.empty_like(seen), np.empty_like(passing)
     for rays in _spread(directions, marching.pixel, count):
-        see_layer(field, light, eye, rays, finer, part, workers)
+        see_layer(field, light, eye, rays, finer, part, workers, ends)
         opacity = 1.0 - part[1][:, 0]
         # Of distances only those count at which there is something.
         part[1][:, 2] *= opacity

@@ -35,6 +35,9 @@ Show = Callable[[npt.NDArray[np.float32], Tagged, float], None]
 
 _WHITE = np.float32(1e30)
 
+PNG_LEVEL = 4
+"""Of a sky it makes files a tenth larger than the library's level 6 in half the time."""
+
 _END_OF_PNG = b"IEND\xaeB`\x82"
 
 
@@ -187,6 +190,7 @@ def _write_png(
         spec[name] = text
     spec["oiio:ColorSpace"] = "srgb_rec709_display"
     spec["oiio:dither"] = 1
+    spec["png:compressionLevel"] = PNG_LEVEL
     output = OpenImageIO.ImageOutput.create(str(temporary))
     if output is None:
         raise write_error(path, temporary, OpenImageIO.geterror())

@@ -101,6 +101,11 @@ class Night:
         return self.is_lit and self.stars != "only"
 
     @property
+    def is_plate(self) -> bool:
+        """Whether maps hold stars and nothing else."""
+        return self.shows_stars and self.stars == "only"
+
+    @property
     def shows_stars(self) -> bool:
         """Whether there can be any."""
         return self.is_lit and self.stars != "exclude"

@@ -13,6 +13,7 @@ from skybake.ephemeris.moon import Moon
 from skybake.ephemeris.place import check_planet
 from skybake.errors import ArgumentError, InputError
 from skybake.image.eclipsing_moon import eclipsing_moon
+from skybake.image.moonlight import Moonlight, moonlight_at
 from skybake.image.night import Night, night_at
 from skybake.image.night_scale import night_scaled
 from skybake.image.settings import MapSettings
@@ -135,6 +136,7 @@ def plan_sequence(
             None if drift is None or not planets[world].clouds else drift[i],
             moon,
             settings.night if moment is None else night_at(settings.night, moment),
+            settings.moonlight if moment is None else moonlight_at(settings.moonlight, moment),
         )
         planned.append(
             Frame(
@@ -260,6 +262,7 @@ def _settings_at(
     cloud_time: float | None,
     moon: Moon | None,
     night: Night,
+    moonlight: Moonlight,
 ) -> MapSettings:
     """Return settings with what a frame has of its own; None leaves a value as it is.
 
@@ -276,4 +279,4 @@ def _settings_at(
     if ev is not None:
         encoding = replace(encoding, ev=ev)
     clouds = settings.clouds if cloud_time is None else replace(settings.clouds, time=cloud_time)
-    return MapSettings(view, lighting, encoding, clouds, night)
+    return MapSettings(view, lighting, encoding, clouds, night, moonlight)

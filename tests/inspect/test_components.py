@@ -8,7 +8,10 @@ import numpy as np
 import pytest
 
 from skybake.ephemeris.celestial import CelestialFrame
+from skybake.ephemeris.moment import sun_at
+from skybake.ephemeris.place import Place
 from skybake.errors import InputError
+from skybake.image.moonlight import Moonlight
 from skybake.image.night import Night
 from skybake.image.scene import Scene
 from skybake.image.settings import map_settings
@@ -49,6 +52,21 @@ def test_the_lights_of_a_night_add_up_to_what_a_map_shows(apart):
     zenith, azimuth = LOOK.zenith[:, None], LOOK.azimuth[:, None]
     shown = (scene.evaluate(zenith, azimuth, 1e-6) @ scene.luminance)[:, 0]
     np.testing.assert_allclose(shown, column(apart["all"]), rtol=0.015)
+
+
+def test_moonlight_is_what_a_map_shows_of_it():
+    # Two days before the full moon of 2026-06-29, which is high over the Atacama.
+    moment = sun_at("2026-06-28T04:00Z", Place(math.radians(-24.6), math.radians(-70.4)))
+    moonlight = Moonlight(moment.lit_moon)
+    where = {"sun_elevation": moment.sun_elevation, "sun_azimuth": moment.sun_azimuth}
+    text = probe_components(EARTH, LOOK, Night(), **where, moonlight=moonlight)
+    rows = [row for row in csv.DictReader(io.StringIO(text)) if row["component"] == "moon"]
+    settings = map_settings(size=(64, 32), **where, moonlight=moonlight, units="nits")
+    scene = Scene(EARTH, settings)
+    zenith, azimuth = LOOK.zenith[:, None], LOOK.azimuth[:, None]
+    shown = (scene.evaluate(zenith, azimuth, 1e-6) @ scene.luminance)[:, 0]
+    np.testing.assert_allclose(column(rows), shown, rtol=0.01)
+    assert 1e-3 < column(rows)[0] < 1e-2
 
 
 def test_magnitudes_are_those_of_the_luminances(apart):
