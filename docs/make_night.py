@@ -70,7 +70,7 @@ VIEWS = (
 
 MARS = View(-4.59, 137.44, "2026-11-26T05:20Z", (284.0, 27.0, 58.0), 0.0, -0.2, "mars")
 
-NOON_TO_NOON = (-24.6, -70.4, "2026-08-12T16:40Z", "2026-08-13T16:10Z")
+NOON_TO_NOON = (-24.6, -70.4, "2026-08-21T16:40Z", "2026-08-22T16:10Z")
 """Latitude, longitude [deg] and the first and the last time of the contact sheet."""
 
 
