@@ -11,6 +11,7 @@ from PIL import Image
 
 import skybake
 from skybake.image.image import image_of_scene
+from skybake.image.moonlight import Moonlight
 from skybake.image.picture import code_values
 
 IMAGES = Path(__file__).parent / "images"
@@ -69,7 +70,7 @@ VIEWS = (
 
 MARS = View(-4.59, 137.44, "2026-11-26T05:20Z", (284.0, 27.0, 58.0), 0.0, -0.2, "mars")
 
-NOON_TO_NOON = (-24.6, -70.4, "2026-08-12T16:40Z", "2026-08-13T16:10Z")
+NOON_TO_NOON = (-24.6, -70.4, "2026-08-21T16:40Z", "2026-08-22T16:10Z")
 """Latitude, longitude [deg] and the first and the last time of the contact sheet."""
 
 
@@ -119,6 +120,7 @@ def contact_sheet() -> np.ndarray:
             sun_elevation=moment.sun_elevation,
             sun_azimuth=moment.sun_azimuth,
             night=skybake.Night(moment.celestial),
+            moonlight=Moonlight(moment.lit_moon),
         )
         row, column = height * (i // COLUMNS), width * (i % COLUMNS)
         tile = pipeline.image("earth", settings).picture()

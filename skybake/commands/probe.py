@@ -185,10 +185,12 @@ def probe(**options: Any) -> None:
         "altitude": options["altitude"],
     }
     if options["components"]:
+        from skybake.image.moonlight import Moonlight
         from skybake.inspect.components import probe_components
 
         night = night_from_options(options, moment)
-        text = probe_components(planet, directions, night, **seen_from)
+        moon = None if moment is None or not night.is_shown else moment.lit_moon
+        text = probe_components(planet, directions, night, **seen_from, moonlight=Moonlight(moon))
     else:
         text = probe(
             planet,

@@ -27,13 +27,18 @@ def night_scaled(maps: Sequence[MapSettings]) -> list[MapSettings]:
     Returns
     -------
     list of MapSettings
-        At `NIGHT_EV` if all are of a night with its lights, or else as they were.
+        At `NIGHT_EV` if all are of a night with its lights or the Moon, or else as they were.
     """
     if not all(_is_of_night(each) for each in maps):
         return list(maps)
     return [replace(each, encoding=replace(each.encoding, ev=NIGHT_EV)) for each in maps]
 
 
+def has_night_scale(settings: MapSettings) -> bool:
+    """Whether a map is of a night, and at the scale of one."""
+    return _is_of_night(settings) and settings.encoding.ev == NIGHT_EV
+
+
 def _is_of_night(settings: MapSettings) -> bool:
-    night = settings.night
-    return night.is_lit and settings.lighting.sun_elevation < DARK
+    is_moonlit = settings.moonlight.moon is not None and settings.moonlight.shown != "exclude"
+    return (settings.night.is_lit or is_moonlit) and settings.lighting.sun_elevation < DARK

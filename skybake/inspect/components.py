@@ -14,8 +14,12 @@ from skybake.angles import cosine_between, direction_from_angles
 from skybake.ephemeris.moon import Moon
 from skybake.errors import InputError
 from skybake.image.luminous import luminous_weights
+from skybake.image.moonlight import Moonlight
+from skybake.image.moonlit import Moonlit
 from skybake.image.night import Night
 from skybake.image.night_figures import surface_magnitude
+from skybake.image.scene import Scene
+from skybake.image.settings import Lighting, MapSettings, View
 from skybake.inspect.probe import COLUMNS, Directions
 from skybake.night.air import NightAir, lines_xyz
 from skybake.night.airglow import airglow_layers
@@ -54,6 +58,8 @@ class Probed(NamedTuple):
         Which lights of the night there are.
     air : NightAir or None
         How the air passes them; None without a night.
+    moonlit : Moonlit or None
+        The Moon as a light.
     zenith, azimuth : ndarray of float64, shape (direction,)
         Zenith angles and compass bearings. [rad]
     """
@@ -61,6 +67,7 @@ class Probed(NamedTuple):
     sky: Sky
     night: Night
     air: NightAir | None
+    moonlit: Moonlit | None
     zenith: Array
     azimuth: Array
 
@@ -76,17 +83,18 @@ Evaluator = Callable[[Probed], Component | None]
 
 def sunlight(probed: Probed) -> Component | None:
     """Light of the sun that the air and the ground scatter: by night, twilight."""
-    sky, source = probed.sky, probed.sky.source
-    mu, sine = np.cos(probed.zenith), np.sin(probed.zenith)
-    relative = probed.azimuth - sky.sun_azimuth
-    nu = cosine_between(mu, sine, source.mu, math.sin(source.zenith), relative)
-    light = np.maximum(sky.radiance_per_irradiance(mu, nu), 0.0)
+    sky = probed.sky
+    light = _scattered(sky, probed)
     return Component(light * sky.irradiance, light @ luminous_weights(sky))
 
 
-def moonlight(_: Probed) -> Component | None:
-    """Light of the moon that the air and the ground scatter."""
-    return None
+def moonlight(probed: Probed) -> Component | None:
+    """Light of the Moon that the air and the ground scatter."""
+    moonlit = probed.moonlit
+    if moonlit is None:
+        return None
+    light = _scattered(moonlit.sky, probed)
+    return Component(light * moonlit.irradiance, light @ moonlit.air_weights)
 
 
 def airglow(probed: Probed) -> Component | None:
@@ -160,6 +168,7 @@ def probe_components(
     altitude: float = 0.0,
     sun_distance: float | None = None,
     moon: Moon | None = None,
+    moonlight: Moonlight | None = None,
 ) -> str:
     """Light of each origin as CSV, in the renderer's own wavelengths, without clouds and discs.
 
@@ -179,6 +188,8 @@ def probe_components(
         Of the sun; default the preset's. [au]
     moon : Moon, optional
         What may be in front of the sun.
+    moonlight : Moonlight, optional
+        The Moon as a light.
 
     Returns
     -------
@@ -193,14 +204,14 @@ def probe_components(
         If a value is out of range, an atmosphere cannot be solved, or there are clouds or an
         eclipse.
     """
-    sky = Sky(
-        planet,
-        sun_elevation,
-        altitude,
-        sun_azimuth=sun_azimuth,
-        sun_distance=sun_distance,
-        moon=moon,
+    lighting = Lighting(
+        sun_elevation, sun_azimuth=sun_azimuth, sun_distance=sun_distance, moon=moon
     )
+    settings = MapSettings(
+        View(altitude), lighting, night=night, moonlight=moonlight or Moonlight()
+    )
+    scene = Scene(planet, settings)
+    sky = scene.sky
     if planet.rendering != "spectral":
         raise InputError("components: must be of a world in wavelengths, got one in RGB")
     if planet.clouds:
@@ -209,7 +220,8 @@ def probe_components(
         raise InputError("components: must be probed without an eclipse")
     air = NightAir(sky, has_airglow=False) if night.is_lit else None
     night = night if night.is_lit else Night()
-    probed = Probed(sky, night, air, directions.zenith, directions.azimuth + sun_azimuth)
+    azimuth = directions.azimuth + sun_azimuth
+    probed = Probed(sky, night, air, scene.moonlit, directions.zenith, azimuth)
     found = {name: evaluate(probed) for name, evaluate in COMPONENTS.items()}
     lights = {name: light for name, light in found.items() if light is not None}
     lights["all"] = Component(
@@ -228,6 +240,16 @@ def probe_components(
             numbers = (y, surface_magnitude(y), x / total, y / total, *light.radiance[i].tolist())
             writer.writerow([*text, name, *(f"{number:.7g}" for number in numbers)])
     return out.getvalue()
+
+
+def _scattered(sky: Sky, probed: Probed) -> Array:
+    """Radiance per unit irradiance of the source of a sky, (direction, wavelength). [sr⁻¹]"""
+    source = sky.source
+    mu, sine = np.cos(probed.zenith), np.sin(probed.zenith)
+    relative = probed.azimuth - sky.sun_azimuth
+    nu = cosine_between(mu, sine, source.mu, math.sin(source.zenith), relative)
+    light: Array = np.maximum(sky.radiance_per_irradiance(mu, nu), 0.0)
+    return light
 
 
 def _of_glow(probed: Probed, air: NightAir, glow: Glow, factor: float) -> Component:

@@ -17,6 +17,9 @@ from skybake.optics.medium import Array
 from skybake.optics.spectrum import star_irradiance
 from skybake.sky.sky import Sky
 
+BESIDE_ECLIPTIC = math.sin(math.radians(4.0))
+"""Sine of the greatest latitude of a sun, as seen from Earth and Mars, with which it can stand."""
+
 
 class Glow(NamedTuple):
     """A light above the air.
@@ -50,12 +53,14 @@ def zodiacal_glow(frame: CelestialFrame, sky: Sky, channels: Channels) -> Glow:
     to_ecliptic = TO_ECLIPTIC @ frame.rotation.T
     sun = to_ecliptic @ sky.sun_direction
     distance = sky.star.distance / ASTRONOMICAL_UNIT
+    # A sun that was put beside the ecliptic by hand is elsewhere than its light.
+    is_there = abs(float(sun[2])) < BESIDE_ECLIPTIC
 
     def brightness(vectors: Array) -> Array:
         x, y, z = np.moveaxis(vectors @ to_ecliptic.T, -1, 0)
         longitude = np.arctan2(y, x) - math.atan2(sun[1], sun[0])
         latitude = np.arcsin(np.clip(z, -1.0, 1.0))
-        light = zodiacal_light(longitude, latitude) * distance ** (-FALL)
+        light = zodiacal_light(longitude, latitude, has_corona=is_there) * distance ** (-FALL)
         share = far_share(longitude, latitude)
         return np.stack([light * (1.0 - share), light * share])
 

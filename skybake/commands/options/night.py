@@ -96,7 +96,7 @@ def is_scale_open(options: Mapping[str, Any]) -> bool:
 
 def scaled_for_night(options: Mapping[str, Any], settings: MapSettings) -> MapSettings:
     """Return the settings of a map at the scale of a night, if it is of one and none is given."""
-    if not (is_scale_open(options) and settings.night.is_lit):
+    if not is_scale_open(options):
         return settings
     from skybake.image.night_scale import night_scaled
 

@@ -51,10 +51,9 @@ def print_summary(baked: Baked, settings: MapSettings, seconds: float) -> None:
 
 
 def _scale(settings: MapSettings) -> str:
-    from skybake.image.night_scale import NIGHT_EV
+    from skybake.image.night_scale import NIGHT_EV, has_night_scale
 
-    of_night = settings.night.is_lit and settings.encoding.ev == NIGHT_EV
-    return f" (EV {NIGHT_EV:g}, of a night)" if of_night else ""
+    return f" (EV {NIGHT_EV:g}, of a night)" if has_night_scale(settings) else ""
 
 
 def target_lines(settings: MapSettings) -> list[str]:
