@@ -96,10 +96,11 @@ def _night(night: Night) -> tuple[str, ...]:
         for name, value in (("airglow", night.airglow), ("zodiacal", night.zodiacal))
         if value != 1.0
     )
+    city = () if night.city == 0.0 else (f"city{1e3 * night.city:.3g}mcd",)
     # By hand, of no time that would move the sun.
     by_hand = night.frame.year == J2000
     stands = f"lst{math.degrees(night.frame.sidereal_time):.2f}deg" if by_hand else ""
-    return (stands, stars, *scales)
+    return (stands, stars, *scales, *city)
 
 
 def _sensor(sensor: Sensor) -> tuple[str, ...]:

@@ -82,7 +82,7 @@ def open_picture(
         ev,
         None if white is None else chromaticity(white),
         shown,
-        partial(show_scene, scene, show, ev, white, shown),
+        partial(show_scene, scene, show, ev, white, shown, settings.vision),
     )
 
 

@@ -17,13 +17,12 @@ from skybake.baking.pixel_type import PixelType, fitting_pixel, value_range
 from skybake.formats.spec import Attribute, MapSpec
 from skybake.formats.whole_files import WholeFiles
 from skybake.image.light import (
-    STAR_ILLUMINANCE,
     Light,
     attributes_from_light,
     eclipse_attributes,
     light_of_scene,
     moon_attributes,
-    star_attributes,
+    night_attributes,
 )
 from skybake.image.parts import part_names
 from skybake.image.picture_settings import PictureSettings
@@ -77,8 +76,8 @@ class Baked(Light):
         What files state of an eclipse; empty without one.
     moonlight : mapping of str to Attribute
         What files state of the Moon as a light; empty without it.
-    star_illuminance : float or None
-        Of the horizontal by stars; None of a map without them. [lx]
+    night : mapping of str to Attribute
+        What files state of the lights of the night; empty by day.
     """
 
     files: tuple[Path, ...]
@@ -94,7 +93,7 @@ class Baked(Light):
     light_files: tuple[Path, ...] = ()
     eclipse: Mapping[str, Attribute] = field(default_factory=dict)
     moonlight: Mapping[str, Attribute] = field(default_factory=dict)
-    star_illuminance: float | None = None
+    night: Mapping[str, Attribute] = field(default_factory=dict)
 
 
 def bake(
@@ -200,12 +199,12 @@ def bake_scene(
     begin("pixels")
     light = light_of_scene(scene)
     eclipse, moonlight = eclipse_attributes(scene), moon_attributes(scene)
-    from_below, starlight = _from_below(scene), star_attributes(scene)
+    from_below, night = _from_below(scene), night_attributes(scene)
     described = None if light_files is None else map_light(scene, light)
     attributes = {
         **attributes_from_light(light),
         **({} if from_below is None else dict(zip(FROM_BELOW, from_below, strict=True))),
-        **starlight,
+        **night,
         **moonlight,
         **eclipse,
         **recipe_attributes(planet, settings),
@@ -244,10 +243,7 @@ def bake_scene(
             if shown is not None:
                 shown.draw(kept)
         if light_files and described is not None:
-            from skybake.sidecar.light_file import write_light_files
-
-            time = attributes.get("skybake:time")
-            write_light_files(light_files, described, paths, files, time=time)
+            _write_lights(light_files, described, paths, files, attributes)
     return Baked(
         **vars(light),
         files=paths,
@@ -263,8 +259,21 @@ def bake_scene(
         light_files=tuple(light_files or ()),
         eclipse=eclipse,
         moonlight=moonlight,
-        star_illuminance=starlight.get(STAR_ILLUMINANCE),
+        night=night,
     )
+
+
+def _write_lights(
+    light_files: Sequence[Path],
+    described: MapLight,
+    paths: Sequence[Path],
+    files: WholeFiles,
+    attributes: Mapping[str, Attribute],
+) -> None:
+    from skybake.sidecar.light_file import write_light_files
+
+    time = attributes.get("skybake:time")
+    write_light_files(light_files, described, paths, files, time=time)
 
 
 def _bands(scene: Scene, picture: PictureSettings | None) -> Bands | None:

@@ -24,6 +24,7 @@ from skybake.commands.options.night import (
     night_from_options,
     night_needs,
     night_options,
+    scaled_for_night,
 )
 from skybake.commands.options.observer import (
     altitude_option,
@@ -186,7 +187,7 @@ def requested_map(
     distance = sun_distance(planet, moment, options["sun_distance"])
     moon = moon_from_options(options, planet, moment, distance)
     lighting = replace(settings.lighting, sun_distance=distance, moon=moon)
-    settings = replace(settings, lighting=lighting)
+    settings = scaled_for_night(options, replace(settings, lighting=lighting))
     return RequestedMap(planet, settings, moment, leaves_disc_out)
 
 

@@ -22,7 +22,12 @@ from skybake.commands.options.emit import (
 )
 from skybake.commands.options.maps import map_needs, map_options, map_settings
 from skybake.commands.options.moonlight import moonlight_needs, moonlight_of_sequence
-from skybake.commands.options.night import night_from_options, night_needs, night_options
+from skybake.commands.options.night import (
+    is_scale_open,
+    night_from_options,
+    night_needs,
+    night_options,
+)
 from skybake.commands.options.observer import (
     altitude_option,
     moon_by_place,
@@ -255,6 +260,7 @@ def _plan_from_options(context: click.Context) -> Plan:
             cloud_time=options["cloud_time"],
             output=options["output"],
             preview=options["preview"] == BESIDE or options["preview"] or False,
+            night_scale=is_scale_open(options) and options["exposure_curve"] is None,
         )
     check_clouds(context, *plan.planets)
     return plan

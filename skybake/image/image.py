@@ -17,7 +17,7 @@ from skybake.image.light import (
     eclipse_attributes,
     light_of_scene,
     moon_attributes,
-    star_attributes,
+    night_attributes,
 )
 from skybake.image.meter import scene_ev, scene_white
 from skybake.image.picture import PREVIEW_WIDTH, CodeValues, code_values
@@ -154,7 +154,7 @@ def image_of_scene(scene: Scene, progress: Callable[[float], None] | None = None
         metadata={
             **attributes_from_light(light),
             **eclipse_attributes(scene),
-            **star_attributes(scene),
+            **night_attributes(scene),
             **moon_attributes(scene),
             **recipe_attributes(scene.planet, scene.settings),
         },

@@ -10,6 +10,7 @@ from skybake.sky.spectral_table import SpectralTable, fold_table
 from skybake.sky.table import FoldedTable
 
 if TYPE_CHECKING:
+    from skybake.night.air import NightAir
     from skybake.sky.stokes_table import StokesTable
 
 
@@ -53,3 +54,10 @@ class Stages:
             As of `skybake.sky.spectral_table.table_geometry`.
         """
         return fold_table(self.spectral_table(sky, finely=finely), sky.skylight.basis, rgb_weights)
+
+    def night_air(self, sky: Sky, *, has_airglow: bool, has_city: bool) -> NightAir:
+        """Return what of the night over the observer no hour changes."""
+        # By day there is none.
+        from skybake.night.air import NightAir
+
+        return NightAir(sky, has_airglow=has_airglow, has_city=has_city)
