@@ -75,9 +75,19 @@ class BandScene(Scene):
         """Values of channels are the radiance per unit irradiance times these."""
         return self._weights
 
+    # Lights of the night are known to an eye alone, which has judged that there are none.
+
+    @property
+    def stars(self) -> None:
+        """No stars."""
+
+    @property
+    def night_glow(self) -> None:
+        """No light between the stars."""
+
     @property
     def moonlit(self) -> None:
-        """No Moon, whose light is known to an eye alone."""
+        """No Moon."""
 
     @property
     def luminance(self) -> Array:

@@ -244,6 +244,19 @@ def test_lights_that_an_eye_alone_knows_are_refused(tmp_path, monkeypatch, optio
     assert listing(tmp_path) == []
 
 
+def test_stars_that_the_day_outshines_are_in_no_spectrum(tmp_path):
+    from skybake.ephemeris.celestial import CelestialFrame
+    from skybake.image.night import Night
+
+    night = Night(frame=CelestialFrame("earth", 1.0, 0.5))
+    for name, values in (("plain", {}), ("starry", {"night": night})):
+        shown = quick(32, (500.0, 600.0), pixel="float", **values)
+        skybake.bake("earth", tmp_path / f"{name}.exr", shown)
+    _, plain = spectrum(tmp_path / "plain.exr")
+    _, starry = spectrum(tmp_path / "starry.exr")
+    assert (plain == starry).all()
+
+
 @pytest.fixture
 def observer(tmp_path):
     """A camera whose channels are those of the observer."""
