@@ -184,7 +184,9 @@ def _dim(
             if is_covered:
                 x, y, z = t * dx, t * dy, t * dz
                 fill_share_at(shadow, x, y, z, local)
-                fill_diffuse_share(shadow, diffuse, rings, corner, x, y, z, mean)
+                up = z + diffuse.planet
+                mu = (x * dx + y * dy + up * dz) / math.sqrt(x * x + y * y + up * up)
+                fill_diffuse_share(shadow, diffuse, rings, corner, x, y, z, mu, mean)
             else:
                 local[:] = 1.0
                 mean[:] = 1.0

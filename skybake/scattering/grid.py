@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -160,11 +161,19 @@ def _split_directions(r_bottom: float, h: float, upward: int, downward: int) -> 
     mu_horizon = -math.sqrt(max(0.0, 1.0 - (r_bottom / (r_bottom + h)) ** 2))
     mu, weight = [], []
     for count, span in ((upward, 1.0 - mu_horizon), (downward, -1.0 - mu_horizon)):
-        x, w = np.polynomial.legendre.leggauss(count)
+        x, w = _gauss_nodes(count)
         x, w = 0.5 * (x + 1.0), 0.5 * w
         mu.append(mu_horizon + span * x**1.5)
         weight.append(abs(span) * 1.5 * np.sqrt(x) * w)
     return np.concatenate(mu), np.concatenate(weight)
+
+
+@cache
+def _gauss_nodes(count: int) -> tuple[Array, Array]:
+    """Nodes and weights of Gauss and Legendre, which each altitude needs."""
+    x, w = np.polynomial.legendre.leggauss(count)
+    x.flags.writeable = w.flags.writeable = False
+    return x, w
 
 
 def empty_field(
