@@ -208,6 +208,14 @@ def test_without_stars_nothing_of_them_is_imported(folder, arguments):
         ((*NIGHT, "--night", "off", "--stars", "only"), "--stars: cannot be combined with --night"),
         (("--lst", "25h", "--lat", "3"), "'--lst': must be from 0h to 24h, got 25h"),
         (("--lst", "soon", "--lat", "3"), "'--lst': must be an angle such as 5deg"),
+        (
+            ("--preset", "mars", "--lst", "5h", "--lat", "3", "--airglow", "2"),
+            "--airglow: is known over Earth, got mars",
+        ),
+        (
+            ("--preset", "titan", "--lst", "5h", "--lat", "3", "--zodiacal", "2"),
+            "--zodiacal: is known over Earth and Mars, got titan",
+        ),
         (("--light-pollution", "1mcd"), "--light-pollution: needs --time or --lst"),
         ((*NIGHT, "--light-pollution", "22mag"), "must be from 13mag to below 22mag"),
         ((*NIGHT, "--light-pollution", "bright"), "must be off or such as 20mag or 1.5mcd,90deg"),
