@@ -12,6 +12,7 @@ import numpy as np
 
 from skybake.environment.environment import Environment
 from skybake.formats.spec import Attribute
+from skybake.formats.spectral_exr import SPECTRAL_UNITS
 from skybake.image.light import attributes_from_light, light_from_attributes
 from skybake.image.recipe import HASH_ATTRIBUTE, LONGEST_RECIPE
 from skybake.projection.of_file import file_recipe
@@ -46,7 +47,9 @@ def converted_attributes(
     kept = {
         name: value
         for name, value in before.attributes.items()
-        if (name.startswith(_OWN) or name in _KEPT) and isinstance(value, str | int | float | tuple)
+        if (name.startswith(_OWN) or name in _KEPT)
+        and name != SPECTRAL_UNITS
+        and isinstance(value, str | int | float | tuple)
     }
     kept.pop(HASH_ATTRIBUTE, None)
     turn = before.rotation - after.rotation
@@ -96,7 +99,7 @@ def _recipe(before: Environment, after: Environment, encoding: Mapping[str, Any]
     shown = recipe.get("map")
     was = shown if isinstance(shown, dict) else {}
     layout = before.projection.recipe()
-    # Of another projection some keys have no meaning.
+    # Of another projection, or without a spectrum, some keys have no meaning.
     others = {key: value for key, value in was.items() if key not in _layout_keys(before)}
     if others.get("sun_disc") == "separate":
         others["sun_disc"] = "include"
@@ -120,4 +123,5 @@ def _recipe(before: Environment, after: Environment, encoding: Mapping[str, Any]
 
 def _layout_keys(environment: Environment) -> set[str]:
     keys = set(environment.projection.recipe())
-    return keys | {*("equirect_rows", "cube_layout", "cube_space", "face_names"), "mips", "layers"}
+    others = ("equirect_rows", "cube_layout", "cube_space", "face_names")
+    return keys | {*others, "mips", "layers", "wavelengths_nm"}

@@ -92,6 +92,11 @@ def _wavelengths(text: str) -> tuple[float, ...]:
 )
 @click.option("--illuminance", is_flag=True, help="Add illuminances by sun and sky, in lx.")
 @click.option(
+    "--stokes",
+    is_flag=True,
+    help="Add Stokes parameters I, Q, U and V, and the degree and angle of linear polarisation.",
+)
+@click.option(
     "--method",
     type=click.Choice((*choices.METHODS, "reference")),
     default="full",
@@ -143,6 +148,7 @@ def probe(**options: Any) -> None:
     import numpy as np
 
     from skybake.image.sun_distance import sun_distance
+    from skybake.inspect.polarised import polarisation_warning
     from skybake.inspect.probe import default_directions, probe, read_directions
     from skybake.optics.medium import build_medium
     from skybake.sky.closure import closure_warning
@@ -162,6 +168,8 @@ def probe(**options: Any) -> None:
         text = input_files.read_text(source, str(source), input_files.LARGEST_DIRECTIONS)
         directions = read_directions(str(source), io.StringIO(text, newline=""))
     wavelengths = options["wavelengths"]
+    if options["stokes"] and (warning := polarisation_warning(planet)) is not None:
+        warn(warning)
     if options["method"] == "hillaire":
         warning = closure_warning(
             build_medium(planet, np.array(planet.wavelengths or WAVELENGTHS, dtype=float))
@@ -191,6 +199,7 @@ def probe(**options: Any) -> None:
             wavelengths=None if wavelengths is None else np.array(wavelengths),
             per_irradiance=options["per_irradiance"],
             illuminance=options["illuminance"],
+            with_stokes=options["stokes"],
             method=options["method"],
             samples=options["samples"],
             clouds=clouds_from_options(context),
@@ -200,7 +209,7 @@ def probe(**options: Any) -> None:
 
 def _components_needs(options: Mapping[str, Any]) -> Needs:
     apart = options["components"]
-    whole = ("wavelengths", "per_irradiance", "illuminance", "method", "samples")
+    whole = ("wavelengths", "per_irradiance", "illuminance", "stokes", "method", "samples")
     return {
         **dict.fromkeys(
             ("sidereal_time", "night", "airglow", "zodiacal", "light_pollution"),

@@ -46,6 +46,7 @@ from skybake.commands.options.previews import (
 )
 from skybake.commands.options.products import product_options, products_from_options
 from skybake.commands.options.rules import Needs, check_needs, usage_faults
+from skybake.commands.options.sensor import sensor_from_options, sensor_needs, sensor_options
 from skybake.commands.options.times import span_from_options, span_needs, span_options
 from skybake.commands.options.world import changes_from_options, world_options
 from skybake.commands.printing import sequence_summary
@@ -84,6 +85,7 @@ SOME_FAILED = 3
     help="Bake only these of them, as one machine of a farm does.",
 )
 @map_options
+@sensor_options
 @click.option(
     "--exposure-curve",
     metavar="FILE.csv",
@@ -168,6 +170,7 @@ def sequence(**options: Any) -> None:
         night_needs(options, is_timed=is_timed, time=times),
         moonlight_needs(options, is_timed=is_timed, time=times),
         map_needs(options),
+        sensor_needs(options),
         preview_needs(options),
         emit_needs(options),
         _needs(options),
@@ -233,6 +236,7 @@ def _plan_from_options(context: click.Context) -> Plan:
         clouds_quality=options["clouds_quality"],
         moon=moon_by_place(options),
         night=night_from_options(options),
+        sensor=sensor_from_options(options),
         moonlight=moonlight_of_sequence(options),
     )
     changes = changes_from_options(context)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from skybake.errors import InputError
 from skybake.formats.preview import DEFAULT_VIEW, png_bytes
 from skybake.image.layers import Pixels
 from skybake.image.light import (
@@ -125,7 +126,11 @@ def image_of_scene(scene: Scene, progress: Callable[[float], None] | None = None
     ------
     CancelledError
         If the scene's workers were stopped.
+    InputError
+        If other channels than those of an eye are asked for.
     """
+    if not scene.settings.sensor.is_eye:
+        raise InputError("sensor: an image holds what an eye sees; other channels are in files")
     light = light_of_scene(scene)
     pictures = []
     canvases = scene.settings.view.projection.canvases()

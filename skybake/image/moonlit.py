@@ -152,10 +152,10 @@ class Moonlit:
     @cached_property
     def lights_air(self) -> bool:
         """Whether its scattered light can be seen beside that of sun and night."""
-        if self.moon.elevation < LOWEST and self._scene.sky.skylight.radius < self._top:
-            return False
         if self._scene.settings.moonlight.is_alone:
             return True
+        if self.moon.elevation < LOWEST and self._scene.sky.skylight.radius < self._top:
+            return False
         least = float((self._scene.clear_survey @ self._scene.luminance).min())
         return ZENITH_SHARE * self.illuminance_above > SEEN_SHARE * least
 

@@ -101,4 +101,11 @@ def gain(encoding: Encoding, ev: float) -> float:
 def _single(scene: Scene, projection: Projection) -> Pixels:
     """Light of a scene in the one picture of a projection."""
     (canvas,) = projection.canvases()
-    return Raster(scene, canvas).rows(0, canvas.height)
+    raster = Raster(scene, canvas)
+    light = raster.rows(0, canvas.height)
+    angle = scene.settings.sensor.polarizer
+    if angle is None:
+        return light
+    from skybake.image.polarised import through_filter
+
+    return through_filter(light, raster.band("stokes", 0, canvas.height), angle)

@@ -12,6 +12,7 @@ from skybake.preset import Planet
 from skybake.projection import Perspective
 
 EV_WAYS = ("auto", "adapt")
+SHOWN = ("light", "dop", "aop")
 WHITE_BALANCES = ("auto", "none")
 COLDEST, HOTTEST = 1000.0, 25_000.0
 """Colour temperatures that a white balance may have. [K]"""
@@ -45,6 +46,9 @@ class PictureSettings:
         Show this view in place of the map's own layout.
     vision : {"camera", "eye"}
         Whether the dark looks as to a camera, or as to the eye, which sees less colour in it.
+    show : {"light", "dop", "aop"}
+        Show the light, or its degree or angle of linear polarisation, see
+        `skybake.image.polarisation_picture`.
 
     Raises
     ------
@@ -57,11 +61,14 @@ class PictureSettings:
     white_balance: WhiteBalance | None = None
     shot: Perspective | None = None
     vision: str = "camera"
+    show: str = SHOWN[0]
 
     def __post_init__(self) -> None:
         """Refuse what cannot be shown."""
         check_view(self.view)
         check_vision(self.vision)
+        if self.show not in SHOWN:
+            raise InputError(f"show: must be one of {', '.join(SHOWN)}, got {self.show!r}")
         if isinstance(self.ev, str) and self.ev not in EV_WAYS:
             raise InputError(f"ev: must be a number or {' or '.join(EV_WAYS)}, got {self.ev!r}")
         if self.white_balance is not None and not _is_white_balance(self.white_balance):

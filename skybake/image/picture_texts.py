@@ -25,6 +25,7 @@ def preview_texts(
         "skybake:whiteBalance": white_balance_text(white_balance_of(picture, planet)),
         "skybake:shot": "none" if picture.shot is None else shot_text(picture.shot),
         **vision_text(picture.vision),
+        **({} if picture.show == "light" else {"skybake:show": picture.show}),
     }
 
 

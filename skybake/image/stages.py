@@ -11,6 +11,7 @@ from skybake.sky.table import FoldedTable
 
 if TYPE_CHECKING:
     from skybake.night.air import NightAir
+    from skybake.sky.stokes_table import StokesTable
 
 
 class Stages:
@@ -33,6 +34,12 @@ class Stages:
     def spectral_table(self, sky: Sky, *, finely: bool = False) -> SpectralTable:
         """Light around the observer in all wavelengths; the one stage that traces rays."""
         return sky.skylight.spectral_table(sky.source, finely=finely)
+
+    def stokes_table(self, sky: Sky) -> StokesTable:
+        """Linear polarisation around the observer in all wavelengths."""
+        from skybake.sky.stokes_table import stokes_table
+
+        return stokes_table(sky.skylight, sky.source, self.spectral_table(sky))
 
     def folded_table(self, sky: Sky, rgb_weights: Array, *, finely: bool = False) -> FoldedTable:
         """Light around the observer as pixel values.

@@ -41,8 +41,15 @@ class KeptStages(Stages):
 
     def spectral_table(self, sky: Sky, *, finely: bool = False) -> SpectralTable:
         """Light around the observer in all wavelengths."""
-        make = super().spectral_table
-        return self._spectral.get(_table_key(sky, finely), lambda: make(sky, finely=finely))
+        return self._spectral.get(_table_key(sky, finely), lambda: self.trace(sky, finely=finely))
+
+    def trace(self, sky: Sky, *, finely: bool) -> SpectralTable:
+        """Trace the rays of a spectral table."""
+        return super().spectral_table(sky, finely=finely)
+
+    def has_traced(self, sky: Sky) -> bool:
+        """Whether the rays of a sky are traced already, or being traced."""
+        return any(self._spectral.has(_table_key(sky, finely)) for finely in (False, True))
 
     def folded_table(self, sky: Sky, rgb_weights: Array, *, finely: bool = False) -> FoldedTable:
         """Light around the observer as pixel values."""
@@ -57,6 +64,23 @@ class KeptStages(Stages):
         return self._night_air.get(
             key, lambda: make(sky, has_airglow=has_airglow, has_city=has_city)
         )
+
+
+class CoarseStages(KeptStages):
+    """Stages for a first glance, whose rays are a third in twilight and in dust."""
+
+    def trace(self, sky: Sky, *, finely: bool) -> SpectralTable:
+        """Trace the rays of a spectral table at few azimuths."""
+        return sky.skylight.spectral_table(sky.source, finely=finely, coarsely=not finely)
+
+    @staticmethod
+    def has_fewer_rays(sky: Sky) -> bool:
+        """Whether it has fewer rays than other stages."""
+        few, all_rays = (
+            sky.skylight.table_geometry(sky.source, coarsely=coarsely).mu.size
+            for coarsely in (True, False)
+        )
+        return few < all_rays
 
 
 def _table_key(sky: Sky, finely: bool) -> TableKey:

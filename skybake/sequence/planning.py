@@ -279,4 +279,4 @@ def _settings_at(
     if ev is not None:
         encoding = replace(encoding, ev=ev)
     clouds = settings.clouds if cloud_time is None else replace(settings.clouds, time=cloud_time)
-    return MapSettings(view, lighting, encoding, clouds, night, moonlight)
+    return MapSettings(view, lighting, encoding, clouds, night, moonlight, settings.sensor)

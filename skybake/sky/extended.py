@@ -123,11 +123,15 @@ class ExtendedSky:
         spectral = np.pad(spectral, ((0, 0), (0, count - self._wavelengths)), mode="edge")
         theta = np.linspace(0.0, 0.5 * math.pi, STEPS)
         weights = _sun_shares(field.sun_angle, theta, spectral)
-        even = field.harmonics.azimuthal == 0
+        plain = field.harmonics.degree.size
+        even = np.zeros(field.radiance.shape[2], np.bool_)
+        even[:plain] = field.harmonics.azimuthal == 0
+        # Of the moments of polarised light the first is the even one.
+        even[plain : plain + 1] = True
         radiance = np.zeros((len(field.altitude), *field.radiance.shape[2:]))
         radiance[:, even] = np.einsum("sk,aslk->alk", weights, field.radiance[:, :, even])
         seen = _at_angles(theta, spectral, straight.zenith) * straight.passing
-        radiance[:, even] += np.einsum("aml,amk->alk", straight.moments, seen)
+        radiance[:, :plain][:, even[:plain]] += np.einsum("aml,amk->alk", straight.moments, seen)
         ground = np.einsum("sk,sk->k", weights, field.ground) + straight.downward @ seen[0]
         suns = len(field.sun_angle)
         return field._replace(

@@ -80,6 +80,12 @@ preview_options = options_together(
         help="Its exposure value at ISO 100; auto meters the sky as a camera does.",
     ),
     preview_vision_option,
+    click.option(
+        "--show",
+        type=click.Choice(choices.SHOWN),
+        show_default="light",
+        help="What it shows: the light, or its degree or angle of linear polarisation.",
+    ),
     look_options,
 )
 
@@ -97,7 +103,7 @@ sequence_preview_options = options_together(
     look_options,
 )
 
-_NAMES = ("preview_ev", "white_balance", "shot", "view", "vision")
+_NAMES = ("preview_ev", "show", "white_balance", "shot", "view", "vision")
 
 
 def picture_from_options(options: Mapping[str, Any], ev: float | str | None) -> PictureSettings:
@@ -119,6 +125,7 @@ def picture_from_options(options: Mapping[str, Any], ev: float | str | None) -> 
         white_balance=options["white_balance"],
         shot=None if view is None else shot(*view),
         vision=options["vision"] or choices.VISIONS[0],
+        show=options.get("show") or choices.SHOWN[0],
     )
 
 
