@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from typing import Any
+
+import numpy as np
 
 from skybake.environment.environment import Environment
 from skybake.formats.spec import Attribute
@@ -18,6 +21,7 @@ from skybake.units import degrees
 _OWN = "skybake:"
 _KEPT = ("Artist", "Copyright", "DateTime", "ImageDescription", "comments", "owner")
 _RECIPE = "skybake:recipe"
+_VECTORS = {"skybake:moonDirection": 3, "skybake:celestialRotation": 9}
 _SPACE, _WHITE = "colorspace", "white_luminance_cd_m2"
 
 
@@ -48,9 +52,11 @@ def converted_attributes(
         and isinstance(value, str | int | float | tuple)
     }
     kept.pop(HASH_ATTRIBUTE, None)
+    turn = before.rotation - after.rotation
     return {
         **kept,
-        **_light(before.attributes, before.rotation - after.rotation),
+        **_light(before.attributes, turn),
+        **_night(before.attributes, turn),
         _RECIPE: _recipe(before, after, encoding),
     }
 
@@ -61,11 +67,31 @@ def _light(attributes: Mapping[str, Any], turn: float) -> dict[str, Attribute]:
         light = light_from_attributes(attributes)
     except (KeyError, TypeError, ValueError):
         return {}
-    x, y, z = light.sun_direction
-    sine, cosine = math.sin(turn), math.cos(turn)
     found = attributes_from_light(light)
-    found["skybake:sunDirection"] = (x * cosine - z * sine, y, z * cosine + x * sine)
+    found["skybake:sunDirection"] = _turned(light.sun_direction, turn)
     return found
+
+
+def _night(attributes: Mapping[str, Any], turn: float) -> dict[str, Attribute]:
+    """Return where the Moon and the stars of a file of ours stand in a map that is turned."""
+    found: dict[str, Attribute] = {}
+    for name, length in _VECTORS.items():
+        value = attributes.get(name, ())
+        numbers = value.split() if isinstance(value, str) else np.ravel(value)
+        if len(numbers) != length:
+            continue
+        with suppress(ValueError):
+            # Columns are vectors.
+            rows = np.array(numbers, dtype=float).reshape(3, -1)
+            columns = [_turned(column, turn) for column in rows.T.tolist()]
+            found[name] = tuple(np.array(columns).T.ravel().tolist())
+    return found
+
+
+def _turned(vector: Sequence[float], turn: float) -> tuple[float, float, float]:
+    x, y, z = vector
+    sine, cosine = math.sin(turn), math.cos(turn)
+    return x * cosine - z * sine, y, z * cosine + x * sine
 
 
 def _recipe(before: Environment, after: Environment, encoding: Mapping[str, Any]) -> str:

@@ -120,7 +120,7 @@ class Moonlit:
         if sky.planet.rendering == "spectral":
             return xyz_weights(sky.wavelengths, nodes, lit)
         # Three wavelengths stand for R, G and B of the sun: as much of it as is left in sum.
-        whole = np.array(sky.planet.wavelengths, dtype=float)
+        whole = np.sort(np.array(sky.planet.wavelengths, dtype=float))
         left = xyz_weights(whole, nodes, lit)[:, 1].sum()
         share_of_light = left / xyz_weights(whole, nodes, sunlight)[:, 1].sum()
         weights: Array = luminous_weights(sky) * share_of_light

@@ -228,7 +228,28 @@ class Skylight:
         """Light along rays per unit irradiance, of the medium's own wavelengths."""
         light = trace_rays(self.atmosphere, *self._rays(source, mu, nu), workers=self.workers)
         count = self.atmosphere.medium.ground_albedo.size
-        return RayLight(light.single[..., :count], light.diffuse[..., :count])
+        diffuse = light.diffuse[..., :count]
+        left = self._left_below_field(source)
+        if left is not None:
+            diffuse = diffuse * left[:count].astype(np.float32)
+        return RayLight(light.single[..., :count], diffuse)
+
+    def _left_below_field(self, source: Source) -> Array | None:
+        """Share of the light that the field has with its lowest sun, (wavelength,), or None.
+
+        A source that is lower still fades as fast as between the last two suns: light of the field
+        itself stays as it is.
+        """
+        field = self.atmosphere.field
+        below = source.zenith - field.sun_angle[-1]
+        if below <= 0.0 or len(field.ground) < 2:
+            return None
+        last, before = field.ground[-1], field.ground[-2]
+        step = field.sun_angle[-1] - field.sun_angle[-2]
+        is_known = (last > 0.0) & (before > last)
+        ratio = np.where(is_known, last, 1.0) / np.where(is_known, before, 1.0)
+        share: Array = ratio ** (below / step)
+        return share
 
     def _rays(self, source: Source, mu: Array, nu: Array) -> tuple[Array, Array, Array, Array]:
         return np.full(mu.shape, self.radius), mu, np.full(mu.shape, source.mu), nu

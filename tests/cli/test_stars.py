@@ -129,6 +129,22 @@ def test_cities_brighten_the_zenith_to_what_is_asked_for(folder):
     assert toward == pytest.approx(lit)
 
 
+def test_a_map_that_is_turned_states_stars_and_moon_in_its_own_axes(folder):
+    moonlit = (*NIGHT[:4], "--time", "2026-01-29T19:00Z", "--method", "hillaire")
+    render(*moonlit, "-o", "a.exr")
+    render(*moonlit, "--rotate", "50deg", "-o", "b.exr")
+    for suffix in ("exr", "hdr"):
+        arguments = ("a.exr", f"c.{suffix}", "--rotate", "50deg", "-q")
+        assert invoke("convert", *arguments).exit_code == 0
+        turned, expected = (read_image(Path(name))[1] for name in (f"c.{suffix}", "b.exr"))
+        for name in ("skybake:celestialRotation", "skybake:moonDirection"):
+            value = turned[name]
+            numbers = value.split() if isinstance(value, str) else np.ravel(value)
+            np.testing.assert_allclose(
+                np.array(numbers, float), np.ravel(expected[name]), atol=1e-5
+            )
+
+
 def test_lighting_maps_have_the_light_of_the_night(folder):
     arguments = (*NIGHT, "--parts", "diffuse", "--diffuse-size", "8")
     for name, more in (("night", ()), ("black", ("--night", "off"))):
@@ -192,6 +208,14 @@ def test_without_stars_nothing_of_them_is_imported(folder, arguments):
         ((*NIGHT, "--night", "off", "--stars", "only"), "--stars: cannot be combined with --night"),
         (("--lst", "25h", "--lat", "3"), "'--lst': must be from 0h to 24h, got 25h"),
         (("--lst", "soon", "--lat", "3"), "'--lst': must be an angle such as 5deg"),
+        (
+            ("--preset", "mars", "--lst", "5h", "--lat", "3", "--airglow", "2"),
+            "--airglow: is known over Earth, got mars",
+        ),
+        (
+            ("--preset", "titan", "--lst", "5h", "--lat", "3", "--zodiacal", "2"),
+            "--zodiacal: is known over Earth and Mars, got titan",
+        ),
         (("--light-pollution", "1mcd"), "--light-pollution: needs --time or --lst"),
         ((*NIGHT, "--light-pollution", "22mag"), "must be from 13mag to below 22mag"),
         ((*NIGHT, "--light-pollution", "bright"), "must be off or such as 20mag or 1.5mcd,90deg"),

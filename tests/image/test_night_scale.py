@@ -5,9 +5,12 @@ import math
 import numpy as np
 
 from skybake.ephemeris.celestial import CelestialFrame
+from skybake.ephemeris.moment import TimeSpan
+from skybake.ephemeris.place import Place
 from skybake.image.night import Night
 from skybake.image.night_scale import night_scaled
 from skybake.image.settings import map_settings
+from skybake.sequence.planning import plan_sequence
 
 LIT = Night(CelestialFrame("earth", 0.0, 0.5))
 
@@ -28,6 +31,14 @@ def test_a_map_of_a_night_has_the_scale_of_a_night():
 def test_a_sequence_has_one_scale():
     assert evs(at(-30.0), at(-9.0)) == [-3.0, -3.0]
     assert evs(at(-30.0), at(-7.0)) == [None, None]
+
+
+def test_frames_of_a_night_have_its_scale_and_others_do_not():
+    place = Place(math.radians(31.0), math.radians(35.0))
+    for start, ev in (("2026-01-15T17:00Z", -3.0), ("2026-01-15T14:00Z", None)):
+        times = TimeSpan(start, "2026-01-15T21:00Z", place, every=3600.0)
+        plan = plan_sequence(times=times, night_scale=True)
+        assert {frame.settings.encoding.ev for frame in plan.frames} == {ev}
 
 
 def test_a_black_night_keeps_its_scale():

@@ -15,7 +15,8 @@ from skybake.image.moonlight import Moonlight
 from skybake.image.night import Night
 from skybake.image.scene import Scene
 from skybake.image.settings import map_settings
-from skybake.inspect.components import COMPONENTS, probe_components
+from skybake.inspect.component_lights import COMPONENTS
+from skybake.inspect.components import probe_components
 from skybake.inspect.probe import probe, read_directions
 from skybake.preset import load_preset
 

@@ -11,6 +11,7 @@ from skybake.errors import InputError
 from skybake.sky import spectral_table
 from skybake.sky.disc import Disc
 from skybake.sky.observer import Observer
+from skybake.sky.sky import Sky
 from skybake.sky.skylight import Skylight
 from skybake.sky.spectral_table import fold_table
 from tests.skies import truth_atmosphere, truth_skylight, white_source
@@ -142,3 +143,14 @@ def test_angles_of_a_direction_are_those_that_it_is_made_of():
     np.testing.assert_allclose(
         zenith_azimuth(7.0 * direction), (math.pi / 2.0 - elevation, azimuth), atol=1e-12
     )
+
+
+def test_the_light_of_a_sun_that_is_lower_than_any_solved_one_fades_on():
+    field = Sky("earth", 0.5).atmosphere.field
+    lowest = 0.5 * math.pi - field.sun_angle[-1]
+    up = np.array([0.0, 1.0, 0.0])
+    before, at, after, deep = (
+        Sky("earth", lowest + math.radians(each)).radiance(up).sum() for each in (1, 0, -1, -20)
+    )
+    assert at / before == pytest.approx(after / at, rel=0.3)
+    assert deep < 1e-6 * at

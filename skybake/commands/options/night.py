@@ -104,6 +104,32 @@ def scaled_for_night(options: Mapping[str, Any], settings: MapSettings) -> MapSe
     return scaled
 
 
+_WORLDS = {"airglow": ("earth",), "zodiacal": ("earth", "mars")}
+"""Planets over which a light is known."""
+
+
+def _check_world(options: Mapping[str, Any]) -> None:
+    """Refuse lights that a world does not have.
+
+    Raises
+    ------
+    click.UsageError
+        That names the option.
+    PresetError
+        If the preset cannot be read.
+    """
+    asked = [name for name in _WORLDS if options[name]]
+    if not asked:
+        return
+    from skybake.preset import planet_name
+
+    planet = planet_name(options["preset"])
+    for name in asked:
+        if planet is not None and planet not in _WORLDS[name]:
+            known = " and ".join(each.capitalize() for each in _WORLDS[name])
+            raise click.UsageError(f"--{name}: is known over {known}, got {options['preset']}")
+
+
 def night_from_options(options: Mapping[str, Any], moment: Moment | None = None) -> Night:
     """Return what of the night a map shows.
 
@@ -126,6 +152,7 @@ def night_from_options(options: Mapping[str, Any], moment: Moment | None = None)
     shown: dict[str, Any] = {
         name: options[name] for name in ("airglow", "zodiacal") if options[name] is not None
     }
+    _check_world(options)
     if options["light_pollution"] is not None:
         shown["city"], shown["city_azimuth"] = options["light_pollution"]
     wanted = options.get("stars")
