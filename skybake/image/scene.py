@@ -13,6 +13,7 @@ from skybake.image.discs import drawn_sun
 from skybake.image.horizontal import horizontal_irradiance
 from skybake.image.layers import wanted_layers
 from skybake.image.luminous import luminous_weights
+from skybake.image.outshone import glow_is_outshone, stars_are_outshone, sun_is_outshone
 from skybake.image.settings import MapSettings
 from skybake.image.stages import Stages
 from skybake.image.survey import SURVEY_ROWS, Survey, Unlit, survey_directions, unlit
@@ -21,7 +22,7 @@ from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.medium import Array
 from skybake.preset import Planet
 from skybake.sky.disc import Disc
-from skybake.sky.pixels import allocate_pixels, fill_directions
+from skybake.sky.pixels import allocate_pixels, blacken_negative, fill_directions
 from skybake.sky.sky import Sky
 from skybake.sky.table import FoldedTable
 
@@ -32,10 +33,7 @@ if TYPE_CHECKING:
     from skybake.image.moonlit import Moonlit
     from skybake.image.night_glow import NightGlow
     from skybake.night.stars import Stars
-
-
-DEEP_NIGHT = math.radians(-20.0)
-"""Elevation of the sun from which on other lights may outshine all of its own. [rad]"""
+    from skybake.sky.stokes_table import FoldedStokes
 
 
 class Scene:
@@ -51,6 +49,8 @@ class Scene:
         Threads that do the work.
     stages : Stages, optional
         What makes the table that pixels read, and may keep it.
+    sky : Sky, optional
+        What is seen, if it is known.
     """
 
     def __init__(
@@ -59,18 +59,20 @@ class Scene:
         settings: MapSettings,
         workers: Workers = ALL_CPUS,
         stages: Stages | None = None,
+        sky: Sky | None = None,
     ) -> None:
         self.planet = planet
         self.settings = settings
         self.workers = workers
-        self._stages = stages or Stages()
-        self.sky = Sky(
+        self.stages = stages or Stages()
+        self.sky = sky or Sky(
             planet,
             settings.lighting.sun_elevation,
             settings.view.altitude,
             sun_azimuth=settings.lighting.sun_azimuth,
             sun_distance=settings.lighting.sun_distance,
             moon=settings.lighting.moon,
+            wavelengths=settings.sensor.colour_wavelengths(),
             method=settings.lighting.method,
             workers=workers,
         )
@@ -131,7 +133,7 @@ class Scene:
             time=self.settings.clouds.time,
             quality=self.settings.clouds.quality,
             workers=self.workers,
-            keeps_light=self._stages.keeps_light_of_clouds,
+            keeps_light=self.stages.keeps_light_of_clouds,
         )
 
     @cached_property
@@ -140,8 +142,6 @@ class Scene:
         night = self.settings.night
         if night.frame is None or not night.shows_stars or self.settings.moonlight.is_alone:
             return None
-        from skybake.image.outshone import stars_are_outshone
-
         if night.stars == "include" and stars_are_outshone(self):
             return None
         from skybake.image.starry import stars_over
@@ -154,13 +154,18 @@ class Scene:
         night = self.settings.night
         if night.frame is None or not night.shows_glow or self.settings.moonlight.is_alone:
             return None
-        from skybake.image.outshone import glow_is_outshone
-
         if glow_is_outshone(self):
             return None
         from skybake.image.night_glow import glow_over
 
-        return glow_over(self, night.frame)
+        return glow_over(self, night.frame, self.stages)
+
+    @cached_property
+    def stokes(self) -> FoldedStokes:
+        """Linear polarisation of the sky, as tables of pixel values."""
+        from skybake.sky.stokes_table import fold_stokes
+
+        return fold_stokes(self.stages.stokes_table(self.sky), self.rgb_weights)
 
     @cached_property
     def moonlit(self) -> Moonlit | None:
@@ -170,7 +175,7 @@ class Scene:
             return None
         from skybake.image.moonlit import Moonlit
 
-        return Moonlit(self, shown.moon, self._stages)
+        return Moonlit(self, shown.moon, self.stages)
 
     def light_clouds(self) -> None:
         """Solve for the light of clouds, which takes longest, before pixels show them."""
@@ -207,12 +212,7 @@ class Scene:
     @cached_property
     def is_sunless(self) -> bool:
         """Whether no light of the sun is seen: it is left out, or far below the horizon."""
-        is_alone = self.settings.moonlight.is_alone
-        if is_alone or self.settings.lighting.sun_elevation > DEEP_NIGHT:
-            return is_alone
-        from skybake.image.outshone import sun_is_outshone
-
-        return sun_is_outshone(self)
+        return self.settings.moonlight.is_alone or sun_is_outshone(self)
 
     @cached_property
     def _surveyed(self) -> Survey | Unlit:
@@ -220,7 +220,7 @@ class Scene:
             return unlit(self.sky)
         return Survey(
             self.sky,
-            self._stages,
+            self.stages,
             rgb_weights=self.rgb_weights,
             xyz_weights=self.xyz_weights,
             luminance=self.luminance,
@@ -295,9 +295,9 @@ class Scene:
     def without_negative(self, pixels: np.ndarray) -> np.ndarray:
         """Set pixels of negative luminance, which are rounding, to 0, and return them."""
         weights = self.luminance.astype(np.float32)
-        # The least value is found 50 times as fast as luminances are.
+        # The least value is found faster than luminances are.
         if pixels.min(initial=0.0) < 0.0 or weights.min() < 0.0:
-            pixels[pixels @ weights < 0.0] = 0.0
+            blacken_negative(weights, pixels)
         return pixels
 
     def clouds_over(self, cloudscape: Cloudscape) -> CloudsOver:
