@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from datetime import UTC, date, datetime, time, timedelta, timezone, tzinfo
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, Protocol
 
 from skybake.ephemeris import earth, mars
 from skybake.ephemeris.horizon import Horizon
@@ -28,7 +28,10 @@ MORNING = ("sunrise", "civil-dawn", "nautical-dawn", "astronomical-dawn")
 _VERBS = {"sunrise": "rise", "sunset": "set"}
 
 EVENTS = (*CROSSINGS, "noon", "midnight")
-"""Events of `event_time`."""
+"""Events of the sun."""
+
+MOON_EVENTS = ("moonrise", "moonset")
+"""Events of the Moon, on Earth."""
 
 _DAY = timedelta(days=1)
 _SECOND = timedelta(seconds=1)
@@ -79,10 +82,10 @@ def event_time(
     Parameters
     ----------
     event : str
-        One of `EVENTS`. Those of the morning, and midnight, are the last before the true
-        noon of the day, those of the evening the first after it; at high latitudes they
+        One of `EVENTS` or `MOON_EVENTS`. Those of the morning, and midnight, are the last before
+        the true noon of the day, those of the evening the first after it; at high latitudes they
         may have another date. On Mars, whose days are longer, the noon is the first
-        after the date has begun.
+        after the date has begun. Those of the Moon are the first on the local date.
     day : date
         By the local clock.
     place : Place
@@ -104,11 +107,28 @@ def event_time(
     Raises
     ------
     InputError
-        If the sun does not pass that elevation, as in polar night and midnight sun; the
-        message says when it last did and will again.
+        If the sun does not pass that elevation, as in polar night and midnight sun, or the Moon
+        the horizon, as on one day a month; the message says when it last did and will again.
     """
     horizon = horizon or Horizon(place.planet)
-    seen = _Day(event, place, zone, horizon)
+    if event in MOON_EVENTS:
+        from skybake.ephemeris.moon_events import MoonDay
+
+        return _found(MoonDay(event, place, zone, horizon), day, search)
+    return _found(_Day(event, place, zone, horizon), day, search)
+
+
+class _Event(Protocol):
+    """An event at a place, of any day."""
+
+    def time(self, day: date) -> datetime | None: ...
+
+    def nearest(self, day: date, step: int) -> datetime | None: ...
+
+    def absence(self, day: date) -> str: ...
+
+
+def _found(seen: _Event, day: date, search: Search | None) -> datetime:
     found = seen.time(day)
     if found is None and search is not None:
         found = seen.nearest(day, 1 if search == "next" else -1)
@@ -186,13 +206,17 @@ class _Day(NamedTuple):
         noon = _noon(day, self.place, self.zone)
         stays_above = self.elevation(noon) > self.target(noon)
         text = absence_text(self.event, f"{self.place} on {day}", stays_above=stays_above)
-        around = {"previous": self.nearest(day, -1), "next": self.nearest(day, 1)}
-        dates = [
-            f"{search}-{self.event} is on {found.astimezone(self.zone):%Y-%m-%d}"
-            for search, found in around.items()
-            if found is not None
-        ]
-        return "; ".join([text, *dates])
+        return "; ".join([text, *dates_around(self, self.event, day, self.zone)])
+
+
+def dates_around(seen: _Event, event: str, day: date, zone: tzinfo) -> list[str]:
+    """Say when an event that does not happen on a day last did, and when it will again."""
+    around = {"previous": seen.nearest(day, -1), "next": seen.nearest(day, 1)}
+    return [
+        f"{search}-{event} is on {found.astimezone(zone):%Y-%m-%d}"
+        for search, found in around.items()
+        if found is not None
+    ]
 
 
 def absence_text(event: str, where: str, *, stays_above: bool) -> str:

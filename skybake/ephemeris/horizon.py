@@ -87,10 +87,11 @@ class Horizon:
             refraction; the dip lower from above the ground, where rays are bent more. [rad]
         """
         if self.planet == "earth":
-            return -_RADIUS_ON_EARTH + self._edge()
+            return -_RADIUS_ON_EARTH + self.edge
         return -math.asin(_SUN_RADIUS / (sun_distance * ASTRONOMICAL_UNIT)) - self.dip
 
-    def _edge(self) -> float:
+    @property
+    def edge(self) -> float:
         """Geometric elevation of what is seen on the horizon of Earth. [rad]"""
         if not self.refraction:
             return -self.dip

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from skybake.ephemeris import mars
-from skybake.ephemeris.events import CROSSINGS, MORNING, absence_text
+from skybake.ephemeris.events import CROSSINGS, MOON_EVENTS, MORNING, absence_text
 from skybake.ephemeris.horizon import Horizon
 from skybake.ephemeris.place import Place
 from skybake.ephemeris.times import parse_clock, split_event
@@ -69,6 +69,8 @@ def event_in_season(event: str, solar_longitude: float, place: Place, horizon: H
     """
     if event in {"noon", "midnight"}:
         return DAY / 2 if event == "noon" else 0.0
+    if event in MOON_EVENTS:
+        raise InputError(f"{event}: needs a place on Earth")
     elevation = CROSSINGS[event]
     if elevation is None:
         elevation = horizon.risen(mars.distance_in_season(solar_longitude))

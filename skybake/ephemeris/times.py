@@ -7,7 +7,7 @@ from datetime import UTC, date, datetime, timedelta, tzinfo
 from difflib import get_close_matches
 from typing import Literal, NamedTuple
 
-from skybake.ephemeris.events import EVENTS, Search, event_time, mean_solar_zone
+from skybake.ephemeris.events import EVENTS, MOON_EVENTS, Search, event_time, mean_solar_zone
 from skybake.ephemeris.horizon import Horizon
 from skybake.ephemeris.local_clock import check_day, day_exists, from_local, utc_text
 from skybake.ephemeris.place import Place
@@ -20,7 +20,7 @@ MAX_STEPS = 100_000
 
 _OFFSET = r"(?:Z|[+-]\d\d:[0-5]\d(?::[0-5]\d)?)"
 _ISO = re.compile(rf"\d{{4}}-\d\d-\d\dT\d\d:\d\d(?::\d\d(?:\.\d{{1,6}})?)?({_OFFSET})?", re.ASCII)
-_EVENT = re.compile(rf"(?:(next|previous)-)?({'|'.join(EVENTS)})(?:([+-])(.+))?")
+_EVENT = re.compile(rf"(?:(next|previous)-)?({'|'.join((*EVENTS, *MOON_EVENTS))})(?:([+-])(.+))?")
 _SECONDS_OF_DAY = 86_400.0
 
 
@@ -40,7 +40,7 @@ class Event(NamedTuple):
     Attributes
     ----------
     name : str
-        One of `EVENTS`.
+        One of `EVENTS` or `MOON_EVENTS`.
     search : {"next", "previous"} or None
         As of `event_time`.
     offset : float
@@ -84,8 +84,8 @@ def parse_time(
     Parameters
     ----------
     text : str
-        ISO 8601 with an offset or, if there is a zone, without one; or one of
-        `EVENTS`, optionally with ``next-`` or ``previous-`` before it and an offset after.
+        ISO 8601 with an offset or, if there is a zone, without one; or one of `EVENTS` or
+        `MOON_EVENTS`, optionally with ``next-`` or ``previous-`` before it and an offset after.
     place : Place, optional
         Of events.
     zone : tzinfo, optional
@@ -111,7 +111,7 @@ def parse_time(
         return _in_range(_time_of(event, place, zone, day, horizon), text)
     iso = _ISO.fullmatch(text)
     if iso is None:
-        like = ", ".join(get_close_matches(text, EVENTS, n=3))
+        like = ", ".join(get_close_matches(text, (*EVENTS, *MOON_EVENTS), n=3))
         raise InputError(
             "must be a time such as 2026-06-21T04:00Z or an event such as sunset+10min, "
             f"got {text!r}" + (f"; nearest: {like}" if like else "")

@@ -8,9 +8,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from skybake.errors import InputError
 from skybake.image.layers import Pixels
 from skybake.image.scene import Scene
-from skybake.optics.medium import Array
+from skybake.image.settings import View
+from skybake.optics.medium import Array, Medium
 
 Evaluate = Callable[[Array, Array, Array], Pixels]
 
@@ -27,6 +29,22 @@ _FLATTEST = 1e-9
 
 _ZENITHS, _AZIMUTHS = 32, 64
 _PROBE_FOOTPRINT = 2e-3
+
+
+def check_horizon(view: View, medium: Medium) -> None:
+    """Refuse to extend a horizon that has no light: that of a planet seen from space.
+
+    Raises
+    ------
+    InputError
+        If the observer is above the atmosphere.
+    """
+    top = medium.r_top - medium.r_bottom
+    if view.altitude >= top:
+        raise InputError(
+            "below horizon: extend needs an observer in the atmosphere, below "
+            f"{top:g} km, got {view.altitude:g} km"
+        )
 
 
 def without_ground(scene: Scene, evaluate: Evaluate) -> Evaluate:

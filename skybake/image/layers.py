@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from skybake.image.settings import MapSettings
 
 Pixels = npt.NDArray[np.float32]
 
@@ -80,3 +84,19 @@ class Layers:
         whole = np.zeros((self.rows, self.columns, plane.pixels.shape[2]), np.float32)
         whole[plane.first_row : plane.first_row + len(plane.pixels)] = plane.pixels
         return whole
+
+
+def wanted_layers(settings: MapSettings) -> tuple[str, ...]:
+    """Return the names of the layers that a map may hold, in the order in which they are added."""
+    disc = settings.lighting.sun_disc
+    if settings.night.stars == "only":
+        return ("stars",)
+    if disc == "only":
+        return ("sun",)
+    is_there = {
+        "sky": True,
+        "sun": disc != "exclude" and not settings.moonlight.is_alone,
+        "moon": disc != "exclude",
+        "stars": True,
+    }
+    return tuple(name for name, there in is_there.items() if there)

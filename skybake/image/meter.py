@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from skybake.colour.exposure import auto_ev
+from skybake.colour.space import rgb_from_xyz
 from skybake.colour.white_balance import Array, automatic_white, white_from_kelvin
 from skybake.image.picture_settings import PictureSettings, white_balance_of
 from skybake.image.raster import Raster, sky_pixels
@@ -57,7 +58,9 @@ def scene_white(scene: Scene, settings: PictureSettings) -> Array | None:
         return white_from_kelvin(float(wanted))
     star: Array = scene.xyz_weights.sum(axis=0)
     _, direct = scene.sun_xyz()
-    light = direct + scene.sky_xyz()
+    encoding = scene.settings.encoding
+    to_xyz = encoding.white_luminance * np.linalg.inv(rgb_from_xyz(encoding.space))
+    light = direct + to_xyz @ scene.sky_on_horizontal
     if scene.moonlit is not None:
         light = light + scene.moonlit.xyz()[1]
     return automatic_white(light if light[1] > NO_LIGHT * star[1] else star)

@@ -33,6 +33,9 @@ SEEN_SHARE = 1e-4
 ZENITH_SHARE = 0.06
 """Luminance of the sky, away from what lights it, over the illuminance that lights it. [sr⁻¹]"""
 
+HIGH, DARKEST_SHARE = math.radians(10.0), 0.005
+"""Elevation from which on the Moon lights all of the sky, and of that the darkest part [sr⁻¹]."""
+
 LOWEST = math.radians(-9.0)
 """Elevation below which the Moon lights the air less than the night's sky does a thousandfold."""
 
@@ -148,6 +151,11 @@ class Moonlit:
         if not self.is_eclipsed:
             return 1.0
         return self.illuminance_above / float(self.xyz_weights[:, 1].sum())
+
+    @property
+    def least_luminance(self) -> float:
+        """Luminance that a clear sky has everywhere by it, or a bound below. [cd m⁻²]"""
+        return DARKEST_SHARE * self.illuminance_above if self.moon.elevation > HIGH else 0.0
 
     @cached_property
     def lights_air(self) -> bool:

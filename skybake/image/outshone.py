@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from skybake.angles import cosine_between
 from skybake.image.night import BRIGHTEST_STAR
 
 if TYPE_CHECKING:
@@ -26,6 +30,18 @@ CITY_AT_HORIZON = 20.0
 
 _VEGA = 2.55e-6
 """Illuminance by V = 0 above the air. [lx]"""
+
+DEEP_NIGHT = math.radians(-20.0)
+"""Elevation of the sun from which on other lights may outshine all of its own. [rad]"""
+
+SUN_SHARE = 1e-4
+"""Share of the darkest night's light that the sun's must be to be seen."""
+
+DARKEST_GLOW = 1.5e-4
+"""Of the sky between stars. [cd m⁻²]"""
+
+SUNWARD = (89.9, 87.0, 80.0, 60.0)
+"""Zenith angles toward the sun at which twilight is last seen. [deg]"""
 
 _PEAK = 0.75**2
 """Of a star's light, what falls into the pixel in the middle of which it is."""
@@ -50,6 +66,27 @@ def glow_is_outshone(scene: Scene) -> bool:
     brightest = BRIGHTEST_GLOW * max(night.airglow, night.zodiacal, 1.0)
     brightest += CITY_AT_HORIZON * night.city
     return brightest < GLOW_SHARE * _darkest(scene)
+
+
+def sun_is_outshone(scene: Scene) -> bool:
+    """Whether the brightest light of a sun below the horizon is lost in that of the night.
+
+    Asked of few rays, toward the sun. From space it is not: there the limb is in sunlight.
+    """
+    night, sky = scene.settings.night, scene.sky
+    if sky.sun_elevation > DEEP_NIGHT:
+        return False
+    least = DARKEST_GLOW if night.frame is not None and night.shows_glow else 0.0
+    if scene.moonlit is not None:
+        least += scene.moonlit.least_luminance
+    if least == 0.0 or scene.planet.clouds or sky.skylight.radius >= sky.medium.r_top:
+        return False
+    zenith = np.radians(SUNWARD)
+    mu, sine = np.cos(zenith), np.sin(zenith)
+    below = sky.source.zenith
+    nu = cosine_between(mu, sine, math.cos(below), math.sin(below), 0.0)
+    light = sky.radiance_per_irradiance(mu, nu) @ scene.xyz_weights[:, 1]
+    return float(light.max()) < SUN_SHARE * least
 
 
 def _darkest(scene: Scene) -> float:

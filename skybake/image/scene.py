@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from skybake.colour.space import luminance_weights, rgb_from_xyz
-from skybake.errors import InputError
 from skybake.image.discs import drawn_sun
 from skybake.image.horizontal import horizontal_irradiance
+from skybake.image.layers import wanted_layers
 from skybake.image.luminous import luminous_weights
+from skybake.image.outshone import glow_is_outshone, stars_are_outshone, sun_is_outshone
 from skybake.image.settings import MapSettings
 from skybake.image.stages import Stages
-from skybake.image.survey import SURVEY_ROWS, Survey, survey_directions
+from skybake.image.survey import SURVEY_ROWS, Survey, Unlit, survey_directions, unlit
 from skybake.jit.arguments import flatten
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.medium import Array
@@ -76,20 +77,14 @@ class Scene:
             workers=workers,
         )
         self.sky.check_clouds()
-        self._check_horizon()
+        settings.moonlight.check_clouds(has_clouds=bool(planet.clouds))
+        if settings.view.below_horizon == "extend":
+            from skybake.image.below_horizon import check_horizon
+
+            check_horizon(settings.view, self.sky.medium)
         self.sun_zenith = math.pi / 2.0 - settings.lighting.sun_elevation
         # Of maps that are not rotated, the compass bearing.
         self.sun_bearing = settings.lighting.sun_azimuth - settings.view.rotation
-
-    def _check_horizon(self) -> None:
-        """Refuse to extend a horizon that has no light: that of a planet seen from space."""
-        view, medium = self.settings.view, self.sky.medium
-        top = medium.r_top - medium.r_bottom
-        if view.below_horizon == "extend" and view.altitude >= top:
-            raise InputError(
-                "below horizon: extend needs an observer in the atmosphere, below "
-                f"{top:g} km, got {view.altitude:g} km"
-            )
 
     @cached_property
     def sun(self) -> Disc:
@@ -147,8 +142,6 @@ class Scene:
         night = self.settings.night
         if night.frame is None or not night.shows_stars or self.settings.moonlight.is_alone:
             return None
-        from skybake.image.outshone import stars_are_outshone
-
         if night.stars == "include" and stars_are_outshone(self):
             return None
         from skybake.image.starry import stars_over
@@ -161,8 +154,6 @@ class Scene:
         night = self.settings.night
         if night.frame is None or not night.shows_glow or self.settings.moonlight.is_alone:
             return None
-        from skybake.image.outshone import glow_is_outshone
-
         if glow_is_outshone(self):
             return None
         from skybake.image.night_glow import glow_over
@@ -219,7 +210,14 @@ class Scene:
         return has_moonlight or self.night_glow is not None
 
     @cached_property
-    def _surveyed(self) -> Survey:
+    def is_sunless(self) -> bool:
+        """Whether no light of the sun is seen: it is left out, or far below the horizon."""
+        return self.settings.moonlight.is_alone or sun_is_outshone(self)
+
+    @cached_property
+    def _surveyed(self) -> Survey | Unlit:
+        if self.is_sunless:
+            return unlit(self.sky)
         return Survey(
             self.sky,
             self.stages,
@@ -232,18 +230,12 @@ class Scene:
     @property
     def layer_names(self) -> tuple[str, ...]:
         """Layers that a map of the scene holds."""
-        if self.settings.night.stars == "only":
-            return ("stars",)
-        disc = self.settings.lighting.sun_disc
-        if disc == "only":
-            return ("sun",)
-        is_there = {
-            "sky": True,
-            "sun": disc != "exclude" and not self.settings.moonlight.is_alone,
-            "moon": disc != "exclude" and self.moonlit is not None and self.moonlit.is_up,
-            "stars": self.stars is not None,
-        }
-        return tuple(name for name, there in is_there.items() if there)
+        wanted = wanted_layers(self.settings)
+        if len(wanted) == 1:
+            return wanted
+        has_moon = self.moonlit is not None and self.moonlit.is_up
+        is_there = {"moon": has_moon, "stars": self.stars is not None}
+        return tuple(name for name in wanted if is_there.get(name, True))
 
     @property
     def luminance(self) -> Array:
@@ -266,17 +258,10 @@ class Scene:
 
     def sky_illuminance(self) -> float:
         """Illuminance of a horizontal plane by the sky without the sun's disc. [lx]"""
-        return float(self._sky_on_horizontal @ self.luminance)
-
-    def sky_xyz(self) -> Array:
-        """XYZ by the sky without the sun's disc, on the horizontal, shape (3,). [lx]"""
-        encoding = self.settings.encoding
-        xyz_from_rgb = np.linalg.inv(rgb_from_xyz(encoding.space))
-        xyz: Array = encoding.white_luminance * (xyz_from_rgb @ self._sky_on_horizontal)
-        return xyz
+        return float(self.sky_on_horizontal @ self.luminance)
 
     @cached_property
-    def _sky_on_horizontal(self) -> Array:
+    def sky_on_horizontal(self) -> Array:
         """Irradiance of the horizontal by the sky, in pixel values, shape (3,). [sr]"""
         # Without clouds, an eclipse or a night both sides of the sun are alike.
         is_even = self.cloudscape is None and self.sky.eclipse is None and not self._is_lit_by_night
@@ -297,7 +282,7 @@ class Scene:
 
     def evaluate_clear(self, zenith: Array, azimuth: Array, footprint: Array | float) -> np.ndarray:
         """Pixel values of the sky without clouds, see `evaluate`."""
-        if self.settings.moonlight.is_alone:
+        if self.is_sunless:
             shape = np.broadcast_shapes(zenith.shape, azimuth.shape)
             pixels = np.zeros((*shape, 3), np.float32)
         else:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from skybake.optics.medium import Array
 from skybake.projection.equirect import column_bearings, row_zeniths
 from skybake.sky.sky import Sky
 from skybake.sky.spectral_table import radiance_at_nodes
-from skybake.sky.table import FoldedTable
+from skybake.sky.table import FoldedTable, horizon_angles
 
 SURVEY_ROWS = 256
 """Rows of an equirect map by which the light of a scene is judged."""
@@ -112,6 +113,36 @@ class Survey:
         """Luminance below which a negative one is none. [cd m⁻²]"""
         white = float(self._xyz_weights[:, 1].sum()) / math.pi
         return max(ROUNDING * brightest, DARK * white)
+
+
+class Unlit(NamedTuple):
+    """What stands for a `Survey` of a sky whose sun gives no light that is seen.
+
+    Attributes
+    ----------
+    table : FoldedTable
+        That says where horizon and atmosphere begin, and holds no light.
+    pixels : ndarray of float32, shape (SURVEY_ROWS, column, 3)
+        Zeros.
+    """
+
+    table: FoldedTable
+    pixels: np.ndarray
+
+
+def unlit(sky: Sky) -> Unlit:
+    """Return the survey of a sky without its sun; no ray is traced for that."""
+    medium = sky.medium
+    first, horizon = horizon_angles(sky.skylight.radius, medium.r_bottom, medium.r_top)
+    table = FoldedTable(
+        zenith_first=first,
+        zenith_horizon=horizon,
+        source_zenith=sky.source.zenith,
+        values=np.zeros((2, 1, 1), np.float32),
+        curves=np.zeros((1, 1), np.float32),
+        is_linear=True,
+    )
+    return Unlit(table, np.zeros((SURVEY_ROWS, 2 * SURVEY_ROWS, 3), np.float32))
 
 
 def _range(values: np.ndarray, weights: Array) -> tuple[float, float]:

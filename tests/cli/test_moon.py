@@ -129,6 +129,7 @@ def test_phase_and_distance_change_from_frame_to_frame(folder):
             (*NIGHT, "--moon", "only", "--stars", "only"),
             "--moon: only cannot be combined with --st",
         ),
+        ((*NIGHT, "--moon", "only", "--clouds", "stratus:0.5"), "moon: only must be in a world w"),
         ((*PLACE, "--time", "4000-01-01T00:00Z"), "--time: must be in the years 1000 to 2999"),
         (
             ("--preset", "mars", "--site", "gale", "--time", "2026-01-01T00:00Z", "--moon", "only"),
@@ -142,3 +143,17 @@ def test_moons_that_contradict_each_other_are_one_line(folder, arguments, messag
     assert result.exit_code in {1, 2}
     assert message in told
     assert not Path("a.exr").exists()
+
+
+def test_a_camera_looks_at_the_moon(folder):
+    here = ("--method", "hillaire", "--size", "40x40", "--no-preview", "-q", "-o", "a.exr")
+    looks = ("--look", "moon", "--fov", "1deg", *here)
+    result = invoke("shot", *PLACE[:4], "--time", "2026-04-25T22:00Z", *looks)
+    assert result.exit_code == 0, result.output
+    pixels, _ = read_image(Path("a.exr"))
+    lit = pixels[..., 1] > 10.0 * np.median(pixels[..., 1])
+    # Half a degree of one, of which two thirds are lit.
+    assert 0.10 < lit.mean() < 0.2
+    nowhere = invoke("shot", "--sun", "-30deg", *looks)
+    assert nowhere.exit_code == 2
+    assert "--look: moon must be in the sky, got none" in nowhere.output

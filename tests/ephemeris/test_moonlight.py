@@ -1,7 +1,8 @@
 """The Moon as a light: where it stands, how it is lit and how it is turned."""
 
 import math
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, date, datetime, timedelta
+from zoneinfo import ZoneInfo
 
 import ephem
 import erfa
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 
 from skybake.ephemeris.earth import ephem_days
+from skybake.ephemeris.events import event_time
 from skybake.ephemeris.horizon import Horizon
 from skybake.ephemeris.lit_moon import moon_by_hand
 from skybake.ephemeris.moment import sun_at
@@ -126,3 +128,44 @@ def test_a_moon_that_does_not_exist_is_refused(azimuth, elevation, phase, messag
     with pytest.raises(InputError) as caught:
         moon_by_hand(azimuth, elevation, phase, 0.0, 0.0)
     assert str(caught.value) == message
+
+
+@pytest.mark.parametrize("event", ["moonrise", "moonset"])
+@pytest.mark.parametrize("day", [date(2026, 4, 2), date(2026, 7, 25), date(2026, 12, 8)], ids=str)
+def test_at_moonrise_and_moonset_the_upper_edge_is_seen_on_the_horizon(event, day):
+    time = event_time(event, day, PARIS, ZoneInfo("Europe/Paris"))
+    assert time.astimezone(ZoneInfo("Europe/Paris")).date() == day
+    _, up, _ = place_by_erfa(time, PARIS)
+    moon = lit_moon_at(time, PARIS, 0.0)
+    edge = math.degrees(math.asin(up) + moon.angular_radius)
+    # Almanacs' refraction of 34 arcmin; a second is 15 arcsec.
+    assert edge == pytest.approx(-34.0 / 60.0, abs=30.0 / 3600.0)
+    later = place_by_erfa(time + timedelta(minutes=1), PARIS)[1]
+    assert (later > up) == (event == "moonrise")
+
+
+def test_on_a_date_without_a_moonrise_the_message_names_the_next_one():
+    days = [date(2026, 4, 1) + timedelta(days=k) for k in range(30)]
+    risen = []
+    for day in days:
+        try:
+            risen.append(event_time("moonrise", day, PARIS, UTC))
+        except InputError as error:
+            missing, message = day, str(error)
+    # Some fifty minutes later each day, so once a month there is none.
+    assert len(risen) == 29
+    gaps = np.diff([each.timestamp() for each in risen]) / 3600.0
+    assert 24.0 < gaps.min() < gaps.max() < 25.8
+    following = missing + timedelta(days=1)
+    assert message == (
+        f"moonrise: the moon does not rise at 48.86N 2.35E on {missing}; previous-moonrise is "
+        f"on {missing - timedelta(days=1)}; next-moonrise is on {following}"
+    )
+    found = event_time("moonrise", missing, PARIS, UTC, search="next")
+    assert found.date() == following
+
+
+def test_the_moon_of_earth_does_not_rise_on_mars():
+    gale = Place(math.radians(-4.6), math.radians(137.4), "mars")
+    with pytest.raises(InputError, match="moonrise: needs a place on Earth"):
+        event_time("moonrise", date(2026, 4, 1), gale, UTC)

@@ -187,3 +187,16 @@ def test_the_moonlit_sky_is_as_bright_as_it_was_measured(moon_zenith):
     assert len(off) == 18
     assert np.abs(off).max() < 0.25
     assert np.abs(off).mean() < 0.15
+
+
+@pytest.mark.parametrize(("sun", "is_seen"), [(-18.0, True), (-40.0, False)])
+def test_the_sun_far_below_the_horizon_is_left_out_where_the_night_outshines_it(sun, is_seen):
+    night = Night(CelestialFrame("earth", 1.0, math.radians(31.0)))
+    lit = scene(sun=sun, night=night)
+    assert lit.is_sunless is not is_seen
+    # Without other lights it is never left out.
+    assert scene(sun=sun).is_sunless is False
+    if not is_seen:
+        whole = lit.evaluate(np.array([[1.5]]), np.zeros((1, 1)), 1e-9)
+        sunlight = scene(sun=sun).evaluate(np.array([[1.5]]), np.zeros((1, 1)), 1e-9)
+        assert (sunlight @ lit.luminance).max() < 1e-4 * (whole @ lit.luminance).max()
