@@ -127,7 +127,5 @@ def _seen(request: Request, view: View) -> MapSettings:
 
 
 def _key(request: Request, settings: MapSettings) -> str:
-    # The size of an equirect map is that of its raster alone.
-    parts = (settings.view, settings.lighting, settings.clouds, settings.night)
     recipe = json.dumps(request.planet.recipe, sort_keys=True, default=str)
-    return "\n".join((recipe, *map(repr, parts)))
+    return f"{recipe}\n{settings!r}"

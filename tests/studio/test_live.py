@@ -360,3 +360,13 @@ def test_a_picture_is_stopped_when_asked(server):
     answer, end = talk(server, conversation)
     assert answer["stage"] == "solving atmosphere"
     assert end["cancelled"]
+
+
+def test_every_knob_of_a_night_makes_another_picture(server):
+    options = {"sun": "-30deg", "moon-elevation": "40deg"}
+    (full, bright), (crescent, dark) = (
+        view_of(server, {**options, "moon-phase": phase}) for phase in ("full", "crescent")
+    )
+    assert full["figures"]["moonlight"]["illuminance_lx"] > 0.1
+    assert full["figures"]["moonlight"]["illuminated_fraction"] > 0.99
+    assert full["scale"] * bright.mean() > 3.0 * crescent["scale"] * dark.mean()
