@@ -74,7 +74,7 @@ class Bakes:
             tell({"bake": number, "stage": stage, "progress": share})
 
         try:
-            scene = self._scenes.map_scene(request, cancel)
+            scene = self._scenes.scene(request, request.settings, cancel)
             scene.workers.check()
             if not scene.sky.is_solved:
                 report("solving atmosphere")
