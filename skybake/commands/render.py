@@ -14,11 +14,17 @@ from skybake.commands.memory import check_memory
 from skybake.commands.options import choices, values
 from skybake.commands.options.clouds import check_clouds, clouds_options
 from skybake.commands.options.maps import map_needs, map_options, map_settings
+from skybake.commands.options.moonlight import (
+    moonlight_from_options,
+    moonlight_needs,
+    moonlight_options,
+)
 from skybake.commands.options.night import (
     lst_option,
     night_from_options,
     night_needs,
     night_options,
+    scaled_for_night,
 )
 from skybake.commands.options.observer import (
     altitude_option,
@@ -38,6 +44,7 @@ from skybake.commands.options.previews import (
     preview_options,
 )
 from skybake.commands.options.rules import check_needs, is_given
+from skybake.commands.options.sensor import sensor_from_options, sensor_needs, sensor_options
 from skybake.commands.options.times import moment_from_options, moment_needs, moment_options
 from skybake.commands.options.world import world_from_options, world_options
 from skybake.commands.printing import render_summary
@@ -78,11 +85,13 @@ class RequestedMap(NamedTuple):
 @moment_options
 @sun_distance_option()
 @moon_options("--time")
+@moonlight_options
 @altitude_option()
 @night_options
 @lst_option
 @clouds_options()
 @map_options
+@sensor_options
 @click.option(
     *("-o", "--output"),
     metavar="FILE",
@@ -152,7 +161,9 @@ def requested_map(
         sun_distance_needs(options, is_timed=is_timed, time="--time"),
         moon_needs(options, is_timed=is_timed, time="--time"),
         night_needs(options, is_timed=is_timed, time="--time"),
+        moonlight_needs(options, is_timed=is_timed, time="--time"),
         map_needs(options),
+        sensor_needs(options),
         preview_needs(options),
     )
     leaves_disc_out = bool(options["lights"]) and not is_given(context, "sun_disc")
@@ -160,10 +171,13 @@ def requested_map(
         # A renderer that took the disc and the light would count the sun twice.
         options["sun_disc"] = "exclude"
     moment = moment_from_options(context)
+    where = positions(options, moment)
     settings = map_settings(
         options,
-        **positions(options, moment),
+        **where,
         night=night_from_options(options, moment),
+        sensor=sensor_from_options(options),
+        moonlight=moonlight_from_options(options, moment, where),
     )
 
     from skybake.image.sun_distance import sun_distance
@@ -173,7 +187,7 @@ def requested_map(
     distance = sun_distance(planet, moment, options["sun_distance"])
     moon = moon_from_options(options, planet, moment, distance)
     lighting = replace(settings.lighting, sun_distance=distance, moon=moon)
-    settings = replace(settings, lighting=lighting)
+    settings = scaled_for_night(options, replace(settings, lighting=lighting))
     return RequestedMap(planet, settings, moment, leaves_disc_out)
 
 

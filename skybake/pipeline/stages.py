@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from skybake.image.stages import Stages
 from skybake.jit.kept import Kept
 from skybake.optics.medium import Array
@@ -10,6 +12,9 @@ from skybake.sky.sky import Sky
 from skybake.sky.spectral_table import SpectralTable
 from skybake.sky.table import FoldedTable
 
+if TYPE_CHECKING:
+    from skybake.night.air import NightAir
+
 TableKey = tuple[str, str, float, float, bool]
 
 
@@ -17,17 +22,22 @@ class KeptStages(Stages):
     """Stages that compute only what the last few requests have not computed.
 
     A spectral table is that of an atmosphere, an observer's altitude and a sun's elevation;
-    a folded one that of a spectral table, a colour space and a scale besides.
+    a folded one that of a spectral table, a colour space and a scale besides. The air of the
+    night is that of an atmosphere and an altitude.
 
     Parameters
     ----------
     most : int
         Spectral tables to keep, 6 to 70 MB each, and twice as many folded ones, 5 MB each.
+    keeps_light_of_clouds : bool, optional
+        As of `Stages`.
     """
 
-    def __init__(self, most: int) -> None:
+    def __init__(self, most: int, *, keeps_light_of_clouds: bool = True) -> None:
+        super().__init__(keeps_light_of_clouds=keeps_light_of_clouds)
         self._spectral: Kept[TableKey, SpectralTable] = Kept(most)
         self._folded: Kept[tuple[TableKey, bytes], FoldedTable] = Kept(2 * most)
+        self._night_air: Kept[tuple[str, float, bool, bool], NightAir] = Kept(most)
 
     def spectral_table(self, sky: Sky, *, finely: bool = False) -> SpectralTable:
         """Light around the observer in all wavelengths."""
@@ -46,6 +56,14 @@ class KeptStages(Stages):
         make = super().folded_table
         key = _table_key(sky, finely), rgb_weights.tobytes()
         return self._folded.get(key, lambda: make(sky, rgb_weights, finely=finely))
+
+    def night_air(self, sky: Sky, *, has_airglow: bool, has_city: bool) -> NightAir:
+        """Return what of the night over the observer no hour changes."""
+        make = super().night_air
+        key = atmosphere_key(sky.medium, sky.table_method), sky.altitude, has_airglow, has_city
+        return self._night_air.get(
+            key, lambda: make(sky, has_airglow=has_airglow, has_city=has_city)
+        )
 
 
 class CoarseStages(KeptStages):

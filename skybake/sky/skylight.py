@@ -118,6 +118,28 @@ class Skylight:
         radiance: Array = (light.single * phase).sum(axis=1) + light.diffuse
         return radiance.reshape(*mu.shape, -1)
 
+    def stokes(self, directions: Array) -> Array:
+        """Stokes vectors by all sources, without their own discs, which are not polarised.
+
+        Parameters
+        ----------
+        directions : array_like, shape (..., 3)
+            As of `radiance`.
+
+        Returns
+        -------
+        ndarray of float64, shape (..., 4, wavelength)
+            As `skybake.sky.stokes` defines them. [W m⁻² sr⁻¹ nm⁻¹]
+
+        Raises
+        ------
+        InputError
+            If a direction is invalid, or the atmosphere was solved for without polarisation.
+        """
+        from skybake.sky.stokes import stokes_of
+
+        return stokes_of(self, unit_directions(directions))
+
     def segments(self, directions: Array, distances: Array) -> Segments:
         """Light gathered up to given distances, by all sources.
 

@@ -15,6 +15,7 @@ from skybake.colour.white_balance import balance
 from skybake.errors import SkybakeError
 from skybake.image.light import light_of_scene
 from skybake.image.meter import scene_ev, scene_white
+from skybake.image.moon_figures import moon_figures
 from skybake.image.picture_settings import PictureSettings
 from skybake.image.scene import Scene
 from skybake.optics.haze import HAZE_WAVELENGTH, visibility
@@ -64,6 +65,7 @@ def figures_of(scene: Scene, picture: PictureSettings) -> dict[str, Any]:
             "azimuth_deg": math.degrees(moon.azimuth) % 360.0,
             "diameter_deg": math.degrees(moon.diameter),
         },
+        "moonlight": _moonlight(scene),
     }
 
 
@@ -106,6 +108,22 @@ def air_figures(planet: Planet) -> dict[str, float | None]:
     return {
         "optical_depth_550": depth,
         "visibility_km": seen if math.isfinite(seen) else None,
+    }
+
+
+def _moonlight(scene: Scene) -> dict[str, float] | None:
+    """Return figures of the Moon as a light, or None where there is none."""
+    if scene.moonlit is None:
+        return None
+    figures = moon_figures(scene, scene.moonlit)
+    return {
+        "elevation_deg": math.degrees(figures.elevation),
+        "azimuth_deg": math.degrees(figures.azimuth) % 360.0,
+        "diameter_deg": math.degrees(figures.angular_diameter),
+        "phase_angle_deg": math.degrees(figures.phase_angle),
+        "illuminated_fraction": figures.illuminated_fraction,
+        "illuminance_lx": figures.normal_illuminance,
+        "horizontal_illuminance_lx": figures.illuminance,
     }
 
 

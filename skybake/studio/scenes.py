@@ -7,8 +7,10 @@ from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import replace
 from threading import Event, Lock
+from typing import NamedTuple
 
 from skybake.image.aim import Aim, Lookout, aimed
+from skybake.image.layers import Pixels
 from skybake.image.scene import Scene
 from skybake.image.settings import Encoding, MapSettings, View
 from skybake.jit.workers import ALL_CPUS
@@ -20,6 +22,7 @@ KEPT_SCENES = 4
 KEPT_SUNS = 4
 
 SOLVING, TRACING, CLOUDS = "solving atmosphere", "tracing light", "solving clouds"
+ECLIPSE = "following the eclipse"
 """Stages that take long."""
 
 FAR = 3.0
@@ -29,33 +32,51 @@ Stage = Callable[[str, float | None], None]
 """Called with the stage that begins, and the share of it that is done, if it is known."""
 
 
+class Finished(NamedTuple):
+    """A scene whose pixels have all been computed.
+
+    Attributes
+    ----------
+    scene : Scene
+        Which nobody stops any more.
+    pixels : ndarray of float32, shape (row, column, 3)
+        Its last full picture.
+    """
+
+    scene: Scene
+    pixels: Pixels
+
+
 class Scenes:
     """Makes scenes of shared stages, and keeps the last of them with what they have computed."""
 
     def __init__(self) -> None:
         self._stages = KeptStages(KEPT_SUNS)
         self._coarse_stages = CoarseStages(KEPT_SUNS)
-        self._kept: OrderedDict[str, Scene] = OrderedDict()
+        self._kept: OrderedDict[str, Finished] = OrderedDict()
         self._lock = Lock()
 
     def scene(self, request: Request, settings: MapSettings, cancel: Event) -> Scene:
-        """Return a scene, which may be that of a request before.
+        """Return a new scene.
 
         Parameters
         ----------
         request : Request
             The world.
         settings : MapSettings
-            As `equirect_settings` or `planet_settings` return them.
+            What is seen of it.
         cancel : threading.Event
-            Stops the work of a new scene.
+            Stops the work.
         """
-        with self._lock:
-            kept = self._kept.get(_key(request, settings))
-            if kept is not None:
-                self._kept.move_to_end(_key(request, settings))
-                return kept
         return self._made(request, settings, cancel, self._stages)
+
+    def finished(self, request: Request, settings: MapSettings) -> Finished | None:
+        """Return the scene of a request before, if it is kept."""
+        key = _key(request, settings)
+        with self._lock:
+            if key in self._kept:
+                self._kept.move_to_end(key)
+            return self._kept.get(key)
 
     def first_glance(self, request: Request, scene: Scene, cancel: Event) -> Scene:
         """Return a scene that looks nearly the same and is there sooner.
@@ -68,16 +89,12 @@ class Scenes:
             return scene
         return self._made(request, scene.settings, cancel, self._coarse_stages)
 
-    def keep(self, request: Request, scene: Scene) -> None:
-        """Keep a scene whose pixels have all been computed: nobody stops it any more."""
+    def keep(self, request: Request, scene: Scene, pixels: Pixels) -> None:
+        """Keep a scene that is finished, for requests that only show it otherwise."""
         with self._lock:
-            self._kept[_key(request, scene.settings)] = scene
+            self._kept[_key(request, scene.settings)] = Finished(scene, pixels)
             while len(self._kept) > KEPT_SCENES:
                 self._kept.popitem(last=False)
-
-    def map_scene(self, request: Request, cancel: Event) -> Scene:
-        """Return the scene of the map itself, on the same pipeline."""
-        return self._made(request, request.settings, cancel, self._stages)
 
     @staticmethod
     def _made(request: Request, settings: MapSettings, cancel: Event, stages: KeptStages) -> Scene:
@@ -111,6 +128,8 @@ def prepare(scene: Scene, stage: Stage) -> None:
     if scene.settings.view.altitude > scene.planet.atmosphere_top:
         # The terminator needs many rays.
         stage(TRACING, None)
+    if scene.settings.lighting.moon is not None:
+        stage(ECLIPSE, None)
     _ = scene.table
     scene.workers.check()
     if scene.planet.clouds:
@@ -127,7 +146,5 @@ def _seen(request: Request, view: View) -> MapSettings:
 
 
 def _key(request: Request, settings: MapSettings) -> str:
-    # The size of an equirect map is that of its raster alone.
-    parts = (settings.view, settings.lighting, settings.clouds, settings.night)
     recipe = json.dumps(request.planet.recipe, sort_keys=True, default=str)
-    return "\n".join((recipe, *map(repr, parts)))
+    return f"{recipe}\n{settings!r}"

@@ -125,12 +125,16 @@ class Server:
 
     def start(self) -> None:
         """Serve in a thread, as long as the process lives."""
-        is_ready = Event()
-        work = Thread(
-            target=lambda: asyncio.run(self._serve(is_ready.set)), name="studio", daemon=True
-        )
-        work.start()
-        is_ready.wait()
+        is_settled = Event()
+
+        def serve() -> None:
+            try:
+                asyncio.run(self._serve(is_settled.set))
+            finally:
+                is_settled.set()
+
+        Thread(target=serve, name="studio", daemon=True).start()
+        is_settled.wait()
 
     async def _serve(self, ready: Callable[[], None]) -> None:
         guard = Guard(self._token, self._port)

@@ -167,7 +167,8 @@ class Studio:
             live.tell(message)
 
     async def _in_thread(self, work: Callable[..., Any], *arguments: Any) -> Any:
-        return await asyncio.get_running_loop().run_in_executor(self._threads, work, *arguments)
+        # Not in the threads of pictures, which may all be at work.
+        return await asyncio.to_thread(work, *arguments)
 
     async def _close(self, _: web.Application) -> None:
         for live in tuple(self._pages):

@@ -9,8 +9,8 @@ from threading import Event, Lock
 from typing import Any
 
 from skybake.errors import CancelledError, InputError, SkybakeError
-from skybake.image.scene import Scene
-from skybake.image.settings import Encoding
+from skybake.image.layers import Pixels
+from skybake.image.settings import Encoding, MapSettings
 from skybake.projection import Equirect, Projection
 from skybake.studio.figures import exposures, figures_of
 from skybake.studio.frames import LARGEST_WIDTH, coarse, halves, message, picture
@@ -147,13 +147,7 @@ def _answer(view: ViewRequest, reader: Reader, scenes: Scenes, send: Send) -> No
     if view.cancel.is_set():
         raise CancelledError("cancelled")
     request = reader.read(view.state)
-    scene, projection = _scene(view, request, scenes)
-
-    def stage(name: str, share: float | None) -> None:
-        view.enter_slow()
-        view.is_solving = name == SOLVING
-        send({"id": view.number, "stage": name, "progress": share})
-
+    settings, projection = _seen(view, request)
     header = {
         "id": view.number,
         "kind": view.kind,
@@ -162,35 +156,47 @@ def _answer(view: ViewRequest, reader: Reader, scenes: Scenes, send: Send) -> No
         "command": shlex.join(reader.words(view.state)),
     }
 
-    def show(shown: Scene, seen: Projection, figures: dict[str, Any]) -> None:
-        pixels = picture(shown, seen)
+    def show(pixels: Pixels, figures: dict[str, Any], *, is_final: bool) -> None:
         height, width = pixels.shape[:2]
         texels, factor = halves(pixels)
         scale = factor * Encoding().white_luminance
-        is_final = shown is scene and width == view.size[0]
         sized = {"width": width, "height": height, "scale": scale, "final": is_final}
         lit = {**figures, **exposures(figures, request.picture, scale)}
         send(message({**header, **sized, "figures": lit}, texels))
 
-    solve(scene, stage)
-    first = scenes.first_glance(request, scene, view.cancel)
-    prepare(first, stage)
+    def stage(name: str, share: float | None) -> None:
+        view.enter_slow()
+        view.is_solving = name == SOLVING
+        send({"id": view.number, "stage": name, "progress": share})
+
+    finished = scenes.finished(request, settings)
+    if finished is not None and finished.pixels.shape[1::-1] == view.size:
+        show(finished.pixels, figures_of(finished.scene, request.picture), is_final=True)
+        return
+    if finished is None:
+        scene = scenes.scene(request, settings, view.cancel)
+        solve(scene, stage)
+        first = scenes.first_glance(request, scene, view.cancel)
+        prepare(first, stage)
+    else:
+        first = scene = finished.scene
     figures = figures_of(first, request.picture)
     glance = coarse(projection)
     if glance is not None:
-        show(first, glance, figures)
+        show(picture(first, glance), figures, is_final=False)
         view.enter_slow()
     if first is not scene:
         prepare(scene, stage)
         figures = figures_of(scene, request.picture)
-    show(scene, projection, figures)
+    pixels = picture(scene, projection)
+    # First of all, since a page that has its picture may at once ask for it otherwise.
     if view.cancel.finish():
-        scenes.keep(request, scene)
+        scenes.keep(request, scene, pixels)
+    show(pixels, figures, is_final=True)
 
 
-def _scene(view: ViewRequest, request: Request, scenes: Scenes) -> tuple[Scene, Projection]:
+def _seen(view: ViewRequest, request: Request) -> tuple[MapSettings, Projection]:
     if view.kind == "planet":
         settings = planet_settings(request, view.size)
-        return scenes.scene(request, settings, view.cancel), settings.view.projection
-    settings = equirect_settings(request)
-    return scenes.scene(request, settings, view.cancel), Equirect(view.size[0])
+        return settings, settings.view.projection
+    return equirect_settings(request), Equirect(view.size[0])
