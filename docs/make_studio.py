@@ -47,7 +47,7 @@ WORLDS = (
     ),
     Shown(
         "mars",
-        "preset=mars&site=gale&ls=180&time=sunset-25min&altitude=2km&preview-ev=12&view.azimuth=262&view.elevation=8&view.fov=80",
+        "preset=mars&site=gale&ls=180&time=sunset-14min&altitude=2km&preview-ev=12.4&white-balance=none&view.azimuth=262&view.elevation=8&view.fov=80",
         documented=(TABLET,),
     ),
     Shown(
@@ -61,8 +61,8 @@ WORLDS = (
         pressed=("#balls",),
     ),
     Shown(
-        "titan",
-        "preset=titan&sun=40deg&view.kind=equirect",
+        "volcanic",
+        "preset=earth-volcanic&sun=-3deg&view.kind=equirect",
         scheme="light",
         pressed=("#stops",),
     ),

@@ -155,6 +155,27 @@ def test_a_map_is_baked_into_the_folder(tab, server):
     assert tab.page.locator("#bake-dialog[open]").count() == 0
 
 
+def test_every_control_has_a_name(tab):
+    nameless = """() => [...document.querySelectorAll("button, input, select, [role=slider]")]
+      .filter(element => !(element.getAttribute("aria-label") || element.textContent.trim()
+        || element.labels?.length))
+      .map(element => element.outerHTML)"""
+    assert tab.page.evaluate(nameless) == []
+
+
+@pytest.mark.parametrize("size", [(1280, 720), (1024, 768), (820, 1180)])
+def test_nothing_is_cut_off_on_screens_and_tablets(tab, size):
+    width, height = size
+    tab.page.set_viewport_size({"width": width, "height": height})
+    outside = """() => [...document.querySelectorAll("header *, footer *, .toolbar *, #groups *")]
+      .filter(element => element.getClientRects().length && !element.closest(".unseen"))
+      .filter(element => element.getBoundingClientRect().right > innerWidth + 0.5)
+      .map(element => element.outerHTML)"""
+    assert tab.page.evaluate(outside) == []
+    sky = tab.page.locator("#sky").bounding_box()
+    assert sky["height"] > 0.35 * height
+
+
 def turn_at_random(tab, rng, sequences):
     """Turn five knobs each time, as fast as a hand."""
     for _ in range(sequences):

@@ -11,6 +11,8 @@ const KNOWN = [
   ["sun_illuminance_lx", "Sun, facing it", lux],
   ["sun_horizontal_illuminance_lx", "Sun, level", lux],
   ["sky_illuminance_lx", "Sky, level", lux],
+  ["moonlight", "Moon, facing it", ({ illuminance_lx: level }) => lux(level)],
+  ["moonlight", "Moon, lit", ({ illuminated_fraction: share }) => `${Math.round(share * 100)} %`],
   ["sun_temperature_k", "Sun's colour", (kelvin, figures) => coloured(figures.sun_colour, kelvin ? `${round(kelvin, 3)}\u00a0K` : "")],
   ["sun_elevation_deg", "Sun's elevation", degrees],
   ["sun_azimuth_deg", "Sun's bearing", degrees],

@@ -27,7 +27,7 @@ export function lightAt(frame, azimuth, elevation) {
  */
 export function lighting(frame) {
   const sun = sunOf(frame);
-  const shaded = { ...frame, texels: sun.texels };
+  const shaded = { ...frame, texels: sun.shaded };
   const sums = Array.from({ length: 9 }, () => [0, 0, 0]);
   const rows = Math.min(MOST_ROWS, frame.height);
   const columns = 2 * rows;

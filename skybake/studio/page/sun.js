@@ -1,4 +1,4 @@
-// The sun's disc in a map: its light, and the map without it.
+// The sun's disc in a map, or at night the Moon's: its light, and the map without it.
 
 import { HALF } from "./half.js";
 import { direction } from "./geometry.js";
@@ -9,15 +9,15 @@ const MOST_TEXELS = 8; // of a radius; larger discs are drawn as the map has the
 const LEAST_EXCESS = 0.02;
 
 /**
- * The sun of an equirect map, in the direction that its figures name.
+ * The sun of an equirect map, in the direction that its figures name, or the Moon where it is brighter.
  *
  * Returns `sunlight`, what it sheds on a plane that faces it, in texels times steradian; `sunward`,
- * where it stands; `texels` without it; and `disc` as it is drawn: `radiance`, `radius` [rad], and
- * `floor`, the sine of the elevation below which it is hidden. `disc` is null where the map
- * shows it better: a large one, or one behind a moon.
+ * where it stands; `shaded`, the texels without it; `texels` as they are drawn; and `disc` that is
+ * drawn over them: `radiance`, `radius` [rad], and `floor`, the sine of the elevation below which
+ * it is hidden. `disc` is null where the map shows it better: a large one, the Moon, or a sun behind it.
  */
 export function sunOf(frame) {
-  const { sun_azimuth_deg: azimuth = 180, sun_elevation_deg: elevation = -90, sun_radius_deg: radius = USUAL_RADIUS, moon } = frame.figures ?? {};
+  const { azimuth, elevation, radius, isHidden } = brightest(frame.figures ?? {});
   const sunward = direction(azimuth, elevation);
   const step = 180 / frame.height;
   const reach = radius + 1.5 * step;
@@ -41,9 +41,17 @@ export function sunOf(frame) {
     });
     if (excess > LEAST_EXCESS) lowest = up - step / 2;
   }
-  const isDrawn = !moon && radius < MOST_TEXELS * step && Math.max(...sunlight) > 0;
+  const isDrawn = !isHidden && radius < MOST_TEXELS * step && Math.max(...sunlight) > 0;
   const disc = isDrawn ? discOf(sunlight, radius * DEG, elevation * DEG, lowest * DEG) : null;
-  return { sunlight, sunward, disc, texels: disc ? texels : frame.texels };
+  return { sunlight, sunward, disc, shaded: texels, texels: disc ? texels : frame.texels };
+}
+
+function brightest(figures) {
+  const { sun_azimuth_deg: azimuth = 180, sun_elevation_deg: elevation = -90, sun_radius_deg: radius = USUAL_RADIUS, moon, moonlight } = figures;
+  if (moonlight && moonlight.illuminance_lx > (figures.sun_illuminance_lx ?? 0)) {
+    return { azimuth: moonlight.azimuth_deg, elevation: moonlight.elevation_deg, radius: moonlight.diameter_deg / 2, isHidden: true };
+  }
+  return { azimuth, elevation, radius, isHidden: Boolean(moon) };
 }
 
 function* rowsOf(frame, azimuth, elevation, reach, step) {
