@@ -15,11 +15,14 @@ if TYPE_CHECKING:
     from skybake.baking import Baked, bake
     from skybake.baking.convert import Converted, convert
     from skybake.baking.orientation_chart import bake_orientation_chart
+    from skybake.colour.camera import CameraResponse, load_camera
     from skybake.colour.space import ColourSpace
+    from skybake.commands.in_notebook import StudioFrame, studio
     from skybake.environment.environment import Environment
     from skybake.environment.load import load_environment
     from skybake.environment.resample import resample
     from skybake.ephemeris.celestial import CelestialFrame
+    from skybake.ephemeris.lit_moon import LitMoon, moon_by_hand
     from skybake.ephemeris.moment import Moment, TimeSpan, sun_at
     from skybake.ephemeris.moon import Moon
     from skybake.ephemeris.place import SITES, Place, find_place
@@ -34,9 +37,12 @@ if TYPE_CHECKING:
     )
     from skybake.image.image import Image
     from skybake.image.light import Light
+    from skybake.image.moon_figures import MoonFigures
+    from skybake.image.moonlight import Moonlight
     from skybake.image.night import Night
     from skybake.image.picture_settings import PictureSettings
     from skybake.image.scene import Scene
+    from skybake.image.sensor import Sensor
     from skybake.image.settings import Clouds, Encoding, Lighting, MapSettings, View, map_settings
     from skybake.image.target import TARGETS, Target, TargetAxes, TargetReason, find_target
     from skybake.jit.workers import Workers
@@ -98,6 +104,7 @@ __all__ = [
     "ArgumentError",
     "Baked",
     "BakedTables",
+    "CameraResponse",
     "CancelledError",
     "CelestialFrame",
     "CloudLayer",
@@ -125,10 +132,13 @@ __all__ = [
     "InputError",
     "Light",
     "Lighting",
+    "LitMoon",
     "MapLight",
     "MapSettings",
     "Moment",
     "Moon",
+    "MoonFigures",
+    "Moonlight",
     "Night",
     "Octahedral",
     "OutputError",
@@ -149,11 +159,13 @@ __all__ = [
     "Ramp",
     "RayleighPhase",
     "Scene",
+    "Sensor",
     "SequenceResult",
     "Sky",
     "SkybakeError",
     "Spectrum",
     "Star",
+    "StudioFrame",
     "TableSettings",
     "TabulatedPhase",
     "TabulatedProfile",
@@ -174,12 +186,15 @@ __all__ = [
     "default_manifest",
     "find_place",
     "find_target",
+    "load_camera",
     "load_environment",
     "load_preset",
     "map_settings",
+    "moon_by_hand",
     "plan_sequence",
     "preset_names",
     "resample",
+    "studio",
     "sun_at",
 ]
 
@@ -190,6 +205,7 @@ _HOMES = {
     "ArgumentError": "skybake.errors",
     "Baked": "skybake.baking",
     "BakedTables": "skybake.luts.bake",
+    "CameraResponse": "skybake.colour.camera",
     "CancelledError": "skybake.errors",
     "CelestialFrame": "skybake.ephemeris.celestial",
     "CloudLayer": "skybake.preset",
@@ -217,10 +233,13 @@ _HOMES = {
     "InputError": "skybake.errors",
     "Light": "skybake.image.light",
     "Lighting": "skybake.image.settings",
+    "LitMoon": "skybake.ephemeris.lit_moon",
     "MapLight": "skybake.sidecar.map_light",
     "MapSettings": "skybake.image.settings",
     "Moment": "skybake.ephemeris.moment",
     "Moon": "skybake.ephemeris.moon",
+    "MoonFigures": "skybake.image.moon_figures",
+    "Moonlight": "skybake.image.moonlight",
     "Night": "skybake.image.night",
     "Octahedral": "skybake.projection",
     "OutputError": "skybake.errors",
@@ -241,12 +260,14 @@ _HOMES = {
     "Ramp": "skybake.sequence.ramp",
     "RayleighPhase": "skybake.preset",
     "Scene": "skybake.image.scene",
+    "Sensor": "skybake.image.sensor",
     "SequenceResult": "skybake.sequence.run",
     "SITES": "skybake.ephemeris.place",
     "Sky": "skybake.pipeline",
     "SkybakeError": "skybake.errors",
     "Spectrum": "skybake.preset",
     "Star": "skybake.preset",
+    "StudioFrame": "skybake.commands.in_notebook",
     "TableSettings": "skybake.luts.settings",
     "TabulatedPhase": "skybake.preset",
     "TabulatedProfile": "skybake.preset",
@@ -267,12 +288,15 @@ _HOMES = {
     "default_manifest": "skybake.sequence.products",
     "find_place": "skybake.ephemeris.place",
     "find_target": "skybake.image.target",
+    "load_camera": "skybake.colour.camera",
     "load_environment": "skybake.environment.load",
     "load_preset": "skybake.preset",
     "map_settings": "skybake.image.settings",
+    "moon_by_hand": "skybake.ephemeris.lit_moon",
     "plan_sequence": "skybake.sequence.planning",
     "preset_names": "skybake.preset",
     "resample": "skybake.environment.resample",
+    "studio": "skybake.studio",
     "sun_at": "skybake.ephemeris.moment",
 }
 

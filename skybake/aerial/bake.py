@@ -172,22 +172,25 @@ def bake_aerial(
 
         air = with_clouds(scene, scene.cloudscape, lens, source.depths, air)
     is_far = np.isinf(source.depths.values)
-    seen = Behind(scene, camera, part.size, part.window)
+    is_thin = np.zeros_like(is_far) if alpha is None or not fills_sky else alpha < 1.0
+    rows = np.flatnonzero((is_far | is_thin).any(axis=1))
     sky = behind = None
-    if is_far.any():
-        # Where nothing shines, none of it passes.
-        passing = seen.passing() if light[is_far].any() else np.ones_like(light)
-        sky = Air(seen.sky(), passing)
-    if fills_sky and alpha is not None:
-        has_disc = "sun" in scene.layer_names
-        behind = seen.whole_sky() if has_disc or sky is None else sky.light
-    out = through_air(light, alpha, air, source.depths, sky, behind)
+    if rows.size:
+        between = int(rows[0]), int(rows[-1]) + 1
+        seen = Behind(scene, camera, part.size, part.window, between)
+        if is_far.any():
+            # Where nothing shines, none of it passes.
+            shines = light[is_far].any()
+            sky = Air(seen.sky, seen.passing() if shines else np.ones_like(light))
+        if is_thin.any():
+            behind = seen.whole_sky()
+    out = through_air(light, alpha, air, source.depths, sky, behind, scene.workers)
     pixels = part.pixels.copy()
     changed = [part.channels.index(name) for name in beauty.colours]
     with np.errstate(over="ignore"):
         pixels = pixels if pixels.dtype != np.float16 else pixels.astype(np.float32)
         pixels[..., changed] = out
-        if behind is not None and beauty.alpha is not None:
+        if fills_sky and beauty.alpha is not None:
             pixels[..., part.channels.index(beauty.alpha)] = 1.0
     parts = list(source.parts)
     parts[beauty.part] = part._replace(pixels=pixels)

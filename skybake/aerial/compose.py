@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 import numpy.typing as npt
@@ -12,11 +12,13 @@ from skybake.aerial.air import Air, Depths
 from skybake.image.layers import Pixels
 from skybake.image.raster import Raster, sky_pixels
 from skybake.image.scene import Scene
+from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.projection.camera import Camera
 from skybake.projection.chart import whole
 from skybake.projection.gnomonic import GnomonicChart
 
 BAND = 128
+ROWS_AT_ONCE = 32
 
 
 def through_air(
@@ -26,6 +28,7 @@ def through_air(
     depths: Depths,
     sky: Air | None,
     behind: Pixels | None,
+    workers: Workers = ALL_CPUS,
 ) -> Pixels:
     """Return light with the air before it.
 
@@ -43,23 +46,38 @@ def through_air(
         Of all the air and the ground, without the sun's disc, for infinite depths.
     behind : ndarray of float32, shape (row, column, 3), or None
         What is behind where coverage is less than 1.
+    workers : Workers, optional
+        Threads that do the work.
 
     Returns
     -------
     ndarray of float32, shape (row, column, 3)
         The very values of `beauty` where the distance is 0 and nothing is behind.
     """
-    covered = np.float32(1.0) if alpha is None else alpha[..., None]
-    out = beauty * air.passing + covered * air.light
-    if sky is not None:
-        is_far = np.isinf(depths.values)
-        share = 1.0 if alpha is None else alpha[is_far, None]
-        out[is_far] = beauty[is_far] * sky.passing[is_far] + share * sky.light[is_far]
-    is_here = depths.values == 0.0
-    out[is_here] = beauty[is_here]
-    if behind is not None and alpha is not None:
-        missing = np.clip(1.0 - alpha, 0.0, 1.0)[..., None]
-        out = np.where(missing > 0.0, out + missing * behind, out)
+    out = np.empty_like(beauty)
+
+    def work(first: int, last: int) -> None:
+        rows = slice(first, last)
+        whole = light, passing = air.light[rows], air.passing[rows]
+        depth = depths.values[rows]
+        is_far = np.isinf(depth)
+        if sky is not None and is_far.any():
+            light, passing = (
+                np.where(is_far[..., None], far[rows], near)
+                for far, near in zip(sky, whole, strict=True)
+            )
+        covered = np.float32(1.0) if alpha is None else alpha[rows, :, None]
+        found = beauty[rows] * passing + covered * light
+        is_here = depth == 0.0
+        if is_here.any():
+            found[is_here] = beauty[rows][is_here]
+        if behind is not None and alpha is not None:
+            missing = np.clip(1.0 - covered, 0.0, 1.0)
+            if missing.any():
+                found = np.where(missing > 0.0, found + missing * behind[rows], found)
+        out[rows] = found
+
+    workers.run_rows(len(beauty), work, chunk=ROWS_AT_ONCE)
     return out
 
 
@@ -76,6 +94,8 @@ class Behind:
         Width and height of the picture. [pixel]
     window : tuple of int
         Where the picture is in what the camera shows, as of `ExrPart`.
+    rows : tuple of int, optional
+        First row that is looked at, and the one after the last; others stay black.
     """
 
     def __init__(
@@ -84,6 +104,7 @@ class Behind:
         camera: Camera,
         size: tuple[int, int],
         window: tuple[int, int, int, int],
+        rows: tuple[int, int] | None = None,
     ) -> None:
         column, row, full_width, full_height = window
         width, height = size
@@ -98,11 +119,18 @@ class Behind:
         chart = GnomonicChart(camera.axes, half_width, half_height, width, height, shift=shift)
         self._scene, self._chart = scene, chart
         self._raster = Raster(scene, whole(chart))
+        self._first, self._last = (0, height) if rows is None else rows
 
     def whole_sky(self) -> Pixels:
         """Sky, ground and, if the scene has it, the sun's disc, shape (row, column, 3)."""
-        return self._of_bands(self._raster.rows)
+        pixels = self.sky.copy()
+        if "sun" in self._scene.layer_names:
+            pixels += self._of_bands(partial(self._raster.band, "sun"))
+        if self._scene.settings.encoding.clamp_negative:
+            np.maximum(pixels, 0.0, out=pixels)
+        return pixels
 
+    @cached_property
     def sky(self) -> Pixels:
         """Sky and ground, shape (row, column, 3)."""
         return self._of_bands(partial(sky_pixels, self._scene, self._chart))
@@ -112,6 +140,8 @@ class Behind:
         return self._of_bands(partial(self._raster.band, "transmittance"))
 
     def _of_bands(self, rows: Callable[[int, int], Pixels]) -> Pixels:
-        height = self._chart.height
-        bands = [rows(first, min(first + BAND, height)) for first in range(0, height, BAND)]
-        return np.concatenate(bands)
+        pixels = np.zeros((self._chart.height, self._chart.width, 3), np.float32)
+        for first in range(self._first, self._last, BAND):
+            last = min(first + BAND, self._last)
+            pixels[first:last] = rows(first, last)
+        return pixels

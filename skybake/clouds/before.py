@@ -68,16 +68,18 @@ class CloudsBefore:
 
         Notes
         -----
-        A layer is before a thing, all of it, if the mean distance of what is seen of it is less.
+        Clouds are followed up to the thing, so that it sinks into them by and by. The air between
+        those of a layer is divided at their mean distance.
         """
         clouds = self._cloudscape
-        seen, passing = clouds.see(unit_vectors(zenith, bearing), pixel)
+        distance = np.ascontiguousarray(distance)
+        seen, passing = clouds.see(unit_vectors(zenith, bearing), pixel, distance)
         count = zenith.size
         row, weight = np.empty((count, 4), np.int64), np.empty((count, 4))
         clouds.find_places(zenith, bearing, row, weight)
         light, passes = np.empty_like(air), np.empty(count, np.float32)
         nodes = row, weight, self._distance, self._lit, self._clear, self._through
-        rays = seen, passing, np.ascontiguousarray(distance), air, total
+        rays = seen, passing, distance, air, total
         flat = [flatten(each) for each in (*nodes, *rays)]
 
         def work(first: int, last: int) -> None:

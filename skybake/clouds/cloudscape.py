@@ -163,8 +163,10 @@ class Cloudscape:
         given = rays.table, rays.row, rays.weight, dimming, self.eye
         return light_rays(*given, rays.directions, rays.visible, self.workers)
 
-    def see(self, directions: Array, pixel: float) -> tuple[Floats, Floats]:
-        """Follow rays through every layer, see `fill_march`.
+    def see(
+        self, directions: Array, pixel: float, ends: Array | None = None
+    ) -> tuple[Floats, Floats]:
+        """Follow rays through every layer, up to `ends` if there are any, see `fill_march`.
 
         Parameters
         ----------
@@ -196,7 +198,7 @@ class Cloudscape:
                 pixel=pixel,
             )
             given = layer.field, solved.light, self.eye, directions, marching
-            see_pixels(*given, (seen[k], passing[k]), self.workers, count)
+            see_pixels(*given, (seen[k], passing[k]), self.workers, count, ends)
         return seen, passing
 
     @cached_property

@@ -55,6 +55,7 @@ def see_pixels(
     out: tuple[Floats, Floats],
     workers: Workers,
     count: float,
+    ends: Array | None = None,
 ) -> None:
     """Do what `see_layer` does, with the mean of `count` times `count` rays for each direction.
 
@@ -65,11 +66,12 @@ def see_pixels(
     has_more = _scattered(directions) < count - least
     for is_chosen, own in ((~has_more, least), (has_more, least + 1)):
         if is_chosen.all():
-            _see_several(field, light, eye, directions, marching, out, workers, own)
+            _see_several(field, light, eye, directions, marching, out, workers, own, ends)
         elif is_chosen.any():
             part = np.empty_like(out[0][is_chosen]), np.empty_like(out[1][is_chosen])
             chosen = np.ascontiguousarray(directions[is_chosen])
-            _see_several(field, light, eye, chosen, marching, part, workers, own)
+            nearest = None if ends is None else np.ascontiguousarray(ends[is_chosen])
+            _see_several(field, light, eye, chosen, marching, part, workers, own, nearest)
             out[0][is_chosen], out[1][is_chosen] = part
 
 
@@ -93,20 +95,21 @@ def _see_several(
     out: tuple[Floats, Floats],
     workers: Workers,
     count: int,
+    ends: Array | None = None,
 ) -> None:
     finer = marching._replace(pixel=marching.pixel / count)
     above = eye.altitude - field.top
     if field.kind == SURFACE and above > 0.0:
         finer = finer._replace(pixel=min(finer.pixel, _BLUR * field.largest_blur / above))
     if count == 1:
-        see_layer(field, light, eye, directions, finer, out, workers)
+        see_layer(field, light, eye, directions, finer, out, workers, ends)
         return
     seen, passing = out
     seen[:], passing[:] = 0.0, 0.0
     weights = np.zeros(len(passing), np.float32)
     part = np.empty_like(seen), np.empty_like(passing)
     for rays in _spread(directions, marching.pixel, count):
-        see_layer(field, light, eye, rays, finer, part, workers)
+        see_layer(field, light, eye, rays, finer, part, workers, ends)
         opacity = 1.0 - part[1][:, 0]
         # Of distances only those count at which there is something.
         part[1][:, 2] *= opacity

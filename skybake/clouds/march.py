@@ -102,8 +102,9 @@ def allocate_march(channels: int, order: int) -> MarchScratch:
 
 @kernel
 def fill_march(
-    field, light, radius, altitude, directions, sun, marching, first, last, scratch, seen, through
-):
+    field, light, radius, altitude, directions, ends, sun, marching, first, last, scratch,
+    seen, through,
+):  # fmt: skip
     """Follow rays through a layer.
 
     Parameters
@@ -116,6 +117,8 @@ def fill_march(
         Of the ground, and of the observer above it. [km]
     directions : ndarray of float64, shape (ray, 3)
         x east, y north, z up.
+    ends : ndarray of float64, shape (ray,)
+        Distances beyond which nothing is seen. [km]
     sun : ndarray of float64, shape (3,)
         Toward the sun, in these axes.
     marching : Marching
@@ -145,7 +148,7 @@ def fill_march(
         through[n, 2] = 0.0
         dx, dy, dz = directions[n, 0], directions[n, 1], directions[n, 2]
         begin = _entry(radius, altitude, dz, field.base, field.top)
-        end = _exit(radius, altitude, dz, field.base, field.top, begin)
+        end = min(_exit(radius, altitude, dz, field.base, field.top, begin), ends[n])
         if end <= begin:
             continue
         place = prepare_ray(light, radius, altitude, directions[n], sun, begin, scratch)

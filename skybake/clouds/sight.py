@@ -48,10 +48,12 @@ def see_layer(
     marching: Marching,
     out: tuple[Floats, Floats],
     workers: Workers,
+    ends: Array | None = None,
 ) -> None:
-    """Call `fill_march` for all rays; `out` are its `seen` and `through`."""
+    """Call `fill_march` for all rays, by default to infinity; `out` are its last arguments."""
+    ends = np.full(len(directions), np.inf) if ends is None else ends
     given = flatten(field), flatten(light)
-    rays, sun = flatten(directions), flatten(eye.sun)
+    rays, limits, sun = flatten(directions), flatten(ends), flatten(eye.sun)
     seen, through = out
 
     def work(first: int, last: int) -> None:
@@ -60,6 +62,7 @@ def see_layer(
             eye.radius,
             eye.altitude,
             rays,
+            limits,
             sun,
             marching,
             first,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import time
 from collections.abc import Mapping
 from dataclasses import replace
@@ -14,6 +15,7 @@ import click
 from skybake.commands.memory import check_memory
 from skybake.commands.options import choices, values
 from skybake.commands.options.camera import (
+    altitude_with,
     camera_from_file,
     camera_option,
     camera_units_option,
@@ -40,6 +42,9 @@ if TYPE_CHECKING:
     from skybake.projection.camera import Camera
 
 _SUN = ("sun_disc", "sun_size", "sun_soft", "sun_strength")
+NIGHT = math.radians(-18.0)
+"""Elevation of the sun below which it leaves no light in the air."""
+
 _EXR = values.with_suffix(".exr")
 
 
@@ -182,6 +187,7 @@ def aerial(**options: Any) -> None:
     from skybake.image import settings as image_settings
     from skybake.image.scene import Scene
     from skybake.image.sun_distance import sun_distance
+    from skybake.image.uneclipsed import check_uneclipsed
 
     planet = world_from_options(context)
     check_clouds(context, planet)
@@ -189,18 +195,19 @@ def aerial(**options: Any) -> None:
         announce_kernels()
     source = read_source(options["beauty"], options["depth"], _reading(options))
     camera = _camera(options, source)
-    where["altitude"] += camera.position[1]
-    if where["altitude"] < 0.0:
-        raise InputError(
-            f"altitude: must be at least 0 m, got {where['altitude'] * 1e3:g} m with that of the "
-            "camera"
-        )
+    where["altitude"] = altitude_with(camera, where["altitude"])
     try:
         settings = image_settings.map_settings(None, **_scale(options, source), **where)
     except InputError as error:
         raise click.UsageError(f"--{error}") from error
     distance = sun_distance(planet, moment, options["sun_distance"])
     settings = replace(settings, lighting=replace(settings.lighting, sun_distance=distance))
+    check_uneclipsed(planet, settings, moment)
+    if settings.lighting.sun_elevation < NIGHT:
+        warn(
+            "sun is more than 18 degrees below the horizon: the air is dark, as the light of moon "
+            "and night is not in it"
+        )
     scene = Scene(planet, settings)
     if not options["quiet"] and not scene.sky.is_solved:
         notice("solving for the light in this atmosphere, once")

@@ -19,7 +19,12 @@ from skybake.commands.options.observer import (
     sun_option,
 )
 from skybake.commands.options.rules import check_needs
-from skybake.commands.options.tables import scene_settings, table_options, table_settings
+from skybake.commands.options.tables import (
+    scene_settings,
+    table_camera,
+    table_options,
+    table_settings,
+)
 from skybake.commands.options.times import moment_from_options, moment_needs, moment_options
 from skybake.commands.options.world import world_from_options, world_options
 from skybake.commands.printing.notices import announce_kernels, notice, warn
@@ -54,30 +59,38 @@ def luts(**options: Any) -> None:
       skybake luts --sun 5deg --preset mars -o mars
       skybake luts --preset earth-hillaire2020 --altitude 2km --method hillaire -o paper
       skybake luts --look 180,10 --fov 75deg --aspect 16:9 --far 64km -o valley
+      skybake luts --camera camera.json --sun 5deg -o shot
       skybake luts --parametrisation bruneton2017 --sky-view-size 256x128 -o sky
     """
     check_memory()
     started = time.perf_counter()
     context = click.get_current_context()
-    is_timed = options["time"] is not None
+    is_timed, has_camera = options["time"] is not None, options["camera"] is not None
     check_needs(
         context,
         moment_needs(context),
         sun_distance_needs(options, is_timed=is_timed, time="--time"),
-        {"units": (options["ev"] is None, "cannot be combined with --ev")},
+        {
+            "units": (options["ev"] is None, "cannot be combined with --ev"),
+            "look": (not has_camera, "cannot be combined with --camera, which has its own"),
+            **dict.fromkeys(("camera_units", "camera_up"), (has_camera, "needs --camera")),
+        },
     )
-    settings = table_settings(options)
+    camera = table_camera(options)
+    settings = table_settings(options, camera)
     moment = moment_from_options(context)
-    view = scene_settings(options, moment)
+    view = scene_settings(options, moment, camera)
 
     from skybake.image.scene import Scene
     from skybake.image.sun_distance import sun_distance
+    from skybake.image.uneclipsed import check_uneclipsed
     from skybake.luts.bake import bake_tables, check_scene
     from skybake.sky.closure import closure_warning
 
     planet = world_from_options(context)
     distance = sun_distance(planet, moment, options["sun_distance"])
     view = replace(view, lighting=replace(view.lighting, sun_distance=distance))
+    check_uneclipsed(planet, view, moment)
     scene = Scene(planet, view)
     check_scene(scene)
     if not options["quiet"]:

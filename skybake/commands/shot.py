@@ -14,6 +14,7 @@ from skybake.commands.memory import check_memory
 from skybake.commands.options import values
 from skybake.commands.options.camera import (
     aim_option,
+    altitude_with,
     camera_from_file,
     camera_option,
     camera_units_option,
@@ -21,11 +22,17 @@ from skybake.commands.options.camera import (
 )
 from skybake.commands.options.clouds import check_clouds, clouds_options
 from skybake.commands.options.maps import given_settings, map_options
+from skybake.commands.options.moonlight import (
+    moonlight_from_options,
+    moonlight_needs,
+    moonlight_options,
+)
 from skybake.commands.options.night import (
     lst_option,
     night_from_options,
     night_needs,
     night_options,
+    scaled_for_night,
 )
 from skybake.commands.options.observer import (
     altitude_option,
@@ -48,6 +55,7 @@ from skybake.commands.printing.progress import map_progress
 from skybake.errors import InputError
 
 if TYPE_CHECKING:
+    from skybake.ephemeris.lit_moon import LitMoon
     from skybake.preset import Planet
     from skybake.projection import Perspective
 
@@ -66,6 +74,7 @@ _STORED = (
 @moment_options
 @sun_distance_option()
 @moon_options("--time")
+@moonlight_options
 @altitude_option()
 @night_options
 @lst_option
@@ -113,7 +122,7 @@ _STORED = (
     help="Picture to look at.",
 )
 @click.option("--no-preview", is_flag=True, help="Write no picture to look at.")
-@options_together(*some_of(preview_options, "preview_ev", "white_balance", "view"))
+@options_together(*some_of(preview_options, "preview_ev", "vision", "white_balance", "view"))
 @click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object.")
 @click.option("-q", "--quiet", is_flag=True, help="Print no progress and no summary.")
 def shot(**options: Any) -> None:
@@ -139,6 +148,7 @@ def shot(**options: Any) -> None:
         sun_distance_needs(options, is_timed=is_timed, time="--time"),
         moon_needs(options, is_timed=is_timed, time="--time"),
         night_needs(options, is_timed=is_timed, time="--time"),
+        moonlight_needs(options, is_timed=is_timed, time="--time"),
         _needs(options),
     )
     moment = moment_from_options(context)
@@ -151,20 +161,22 @@ def shot(**options: Any) -> None:
 
     planet = world_from_options(context)
     check_clouds(context, planet)
-    projection = _projection(options, planet, where)
+    moonlight = moonlight_from_options(options, moment, where)
+    projection = _projection(options, planet, where, moonlight.moon)
     try:
         settings = image_settings.map_settings(
             projection,
             **given_settings(options),
             **where,
             night=night_from_options(options, moment),
+            moonlight=moonlight,
         )
     except InputError as error:
         raise click.UsageError(f"--{error}") from error
     distance = sun_distance(planet, moment, options["sun_distance"])
     moon = moon_from_options(options, planet, moment, distance)
     lighting = replace(settings.lighting, sun_distance=distance, moon=moon)
-    settings = replace(settings, lighting=lighting)
+    settings = scaled_for_night(options, replace(settings, lighting=lighting))
     output = options["output"] or default_path(planet, settings)
     preview = None if options["no_preview"] else options["preview"] or preview_beside(output)
     quiet = options["quiet"]
@@ -204,7 +216,7 @@ def _needs(options: Mapping[str, Any]) -> Needs:
         ),
         **dict.fromkeys(("camera_units", "camera_up"), (has_camera, "needs --camera")),
         **dict.fromkeys(
-            ("preview", "preview_ev", "white_balance", "view"),
+            ("preview", "preview_ev", "vision", "white_balance", "view"),
             (has_preview, "cannot be combined with --no-preview"),
         ),
         **dict.fromkeys(
@@ -218,7 +230,9 @@ def _needs(options: Mapping[str, Any]) -> Needs:
     }
 
 
-def _projection(options: Mapping[str, Any], planet: Planet, where: dict[str, Any]) -> Perspective:
+def _projection(
+    options: Mapping[str, Any], planet: Planet, where: dict[str, Any], moon: LitMoon | None
+) -> Perspective:
     """Return what the camera sees; a height of its own is added to the altitude in `where`."""
     from skybake.image.aim import Aim, Lookout, aimed
 
@@ -231,7 +245,7 @@ def _projection(options: Mapping[str, Any], planet: Planet, where: dict[str, Any
         name, azimuth, elevation = options["look"] or ("horizon", None, 0.0)
         return aimed(
             Aim(name, azimuth, elevation),
-            Lookout(planet, where["altitude"], where["sun_azimuth"], where["sun_elevation"]),
+            Lookout(planet, where["altitude"], where["sun_azimuth"], where["sun_elevation"], moon),
             size or SIZE,
             fov=options["fov"],
             roll=options["roll"] or 0.0,
@@ -253,12 +267,7 @@ def _of_camera(
         options["fov"],
         width / max(height, 1),
     )
-    where["altitude"] += camera.position[1]
-    if where["altitude"] < 0.0:
-        raise InputError(
-            f"altitude: must be at least 0 m, got {where['altitude'] * 1e3:g} m with that of the "
-            "camera"
-        )
+    where["altitude"] = altitude_with(camera, where["altitude"])
     picture = Perspective.of_camera(camera, width)
     if size is not None and abs(picture.height - height) > 1:
         raise InputError(

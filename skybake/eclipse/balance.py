@@ -11,6 +11,7 @@ import numpy.typing as npt
 from skybake.eclipse.diffuse import (
     AZIMUTHS,
     RINGS,
+    SLOPES,
     DiffuseShare,
     new_corner,
     sum_diffuse,
@@ -45,7 +46,7 @@ def no_table(planet: float, bottom: float, wavelengths: int) -> DiffuseShare:
         bottom=bottom,
         axes=np.eye(3),
         altitude=np.array([0.0, 1.0]),
-        share=np.ones((2, 0, AZIMUTHS, wavelengths)),
+        share=np.ones((2, 0, AZIMUTHS, SLOPES.size, wavelengths)),
         ground=np.ones((0, AZIMUTHS, wavelengths)),
     )
 
@@ -59,11 +60,12 @@ def balance_diffuse(
 ) -> DiffuseShare:
     """Find the share of diffuse light around the observer, or around the shadow's axis.
 
-    The mean radiance at a place is what arrives from all the air and ground around it. Its share
-    in an eclipse is the sum over these of what each sends of sunlight, times the share that is
-    uncovered there, and of diffuse light, times the share that this table itself has there, over
-    the same sums without the eclipse. All directions of diffuse light at a place are thus dimmed
-    alike, and where light comes from is as at the table's centre.
+    What a place scatters on is what arrives from all the air and ground around it. Its share in an
+    eclipse is the sum over these of what each sends of sunlight, times the share that is uncovered
+    there, and of diffuse light, times the share that this table itself has there, over the same
+    sums without the eclipse. It depends on how steeply the observer looks at the place, as in an
+    eclipse light arrives from other elevations than by day, but not on the azimuth, and where
+    light comes from is as at the table's centre.
 
     Parameters
     ----------
@@ -96,16 +98,18 @@ def balance_diffuse(
     shares: Array = np.ones(())
     step: Array = np.zeros(())
     for _ in range(MOST_PASSES):
-        found = sums.shares(table).reshape(-1, len(RINGS), AZIMUTHS, shadow.powers.shape[1])
+        found = sums.shares(table).reshape(
+            -1, len(RINGS), AZIMUTHS, SLOPES.size, shadow.powers.shape[1]
+        )
         before, step, shares = step, found - shares, found
         if np.all(np.abs(step) <= TOLERANCE * shares):
             break
-        table = table._replace(share=shares[:-1].copy(), ground=shares[-1].copy())
+        table = table._replace(share=shares[:-1].copy(), ground=shares[-1, ..., 0, :].copy())
     # Light that comes by way of many scatterings is the sum of a geometric series, nearly.
     ratio = step / np.where(before == 0.0, 1.0, before)
     ratio = np.where((before > 0.0) & (ratio > 0.0), np.minimum(ratio, SLOWEST), 0.0)
     shares = np.minimum(shares + step * ratio / (1.0 - ratio), 1.0)
-    return table._replace(share=shares[:-1].copy(), ground=shares[-1].copy())
+    return table._replace(share=shares[:-1].copy(), ground=shares[-1, ..., 0, :].copy())
 
 
 def _axes(up: Array, sun: Array) -> Array:
@@ -158,28 +162,34 @@ class _Sums:
         self._local = shares_at(shadow, places)
 
     def shares(self, table: DiffuseShare) -> Array:
-        """Return the shares by a table, shape (receiver, place, wavelength)."""
+        """Return the shares by a table, shape (receiver, place, slope, wavelength)."""
         flat, rings = flatten(table), flatten(RINGS)
         arrived = self._sunlight
-        whole = np.stack([one.sunlight.sum(axis=0) for one in self._receivers])
+        whole = np.stack([_bundled(one, one.sunlight) for one in self._receivers])
         if table.share.shape[1] > 0:
 
             def at(one: Emitters, turn: Array, out: Array) -> None:
                 share = np.empty(self._wavelengths)
                 sum_diffuse(
-                    self._shadow, flat, rings, new_corner(), one.place, one.on_ground,
+                    self._shadow, flat, rings, new_corner(), one.place, one.bundle, one.on_ground,
                     one.diffuse, turn, share, out,
                 )  # fmt: skip
 
             arrived = arrived + self._run(at)
-            whole = whole + np.stack([one.diffuse.sum(axis=0) for one in self._receivers])
-        is_dark = np.broadcast_to(whole[:, None] < DARK, arrived.shape)
-        share = arrived / np.maximum(whole[:, None], DARK)
-        return np.clip(np.where(is_dark, self._local, share), 0.0, 1.0)
+            whole = whole + np.stack([_bundled(one, one.diffuse) for one in self._receivers])
+        shares = np.empty((*arrived.shape[:2], SLOPES.size, self._wavelengths))
+        for k, one in enumerate(self._receivers):
+            left, all_of_it = (
+                np.einsum("sbw,...bw->...sw", one.scatter, light[k]) for light in (arrived, whole)
+            )
+            is_dark = np.broadcast_to(all_of_it < DARK, left.shape)
+            share = left / np.maximum(all_of_it, DARK)
+            shares[k] = np.where(is_dark, self._local[k, :, None], share)
+        return np.clip(shares, 0.0, 1.0)
 
     def _run(self, at: Callable[[Emitters, Array, Array], None]) -> Array:
-        places = len(self._turns)
-        out = np.empty((len(self._receivers), places, self._wavelengths))
+        places, bundles = len(self._turns), self._receivers[0].scatter.shape[1]
+        out = np.empty((len(self._receivers), places, bundles, self._wavelengths))
 
         def work(first: int, last: int) -> None:
             for i in range(first, last):
@@ -191,4 +201,11 @@ class _Sums:
 
     def _sunlight_at(self, one: Emitters, turn: Array, out: Array) -> None:
         share = np.empty(self._wavelengths)
-        sum_sunlight(self._shadow, one.place, one.sunlight, turn, share, out)
+        sum_sunlight(self._shadow, one.place, one.bundle, one.sunlight, turn, share, out)
+
+
+def _bundled(emitters: Emitters, light: Array) -> Array:
+    """Sum the light of each bundle, shape (bundle, wavelength)."""
+    sums = np.zeros(emitters.scatter.shape[1:])
+    np.add.at(sums, emitters.bundle, light)
+    return sums

@@ -19,6 +19,10 @@ RINGS = np.array(
 """Distances along the ground, from its centre, at which the share is tabulated. [km]"""
 
 AZIMUTHS = 16
+SLOPES = np.linspace(-1.0, 1.0, 9) * np.abs(np.linspace(-1.0, 1.0, 9))
+"""Cosines of the zenith angles at which a place is looked at, by the square of their root: in
+totality light comes from the horizon, and particles scatter most of it on near there."""
+
 FADE = 0.7
 """Share of the last ring from which the local share of sunlight takes over."""
 
@@ -37,9 +41,10 @@ class DiffuseShare(NamedTuple):
         it, and up there.
     altitude : ndarray of float64, shape (altitude,)
         Ascending from 0. [km]
-    share : ndarray of float64, shape (altitude, ring, azimuth, wavelength)
-        Of the mean radiance. Azimuths are clockwise from the sun's; there is no ring where the
-        share of sunlight serves instead.
+    share : ndarray of float64, shape (altitude, ring, azimuth, slope, wavelength)
+        Of what is scattered toward an observer, by the slope of the ray that looks there, of
+        `SLOPES`. Azimuths are clockwise from the sun's; there is no ring where the share of
+        sunlight serves instead.
     ground : ndarray of float64, shape (ring, azimuth, wavelength)
         Of the sky's irradiance of the ground.
     """
@@ -73,8 +78,8 @@ def new_corner() -> Corner:
 
 
 @kernel
-def fill_diffuse_share(shadow, diffuse, rings, corner, x, y, z, out):
-    """Write the share of diffuse light at a place of the air, shape (wavelength,).
+def fill_diffuse_share(shadow, diffuse, rings, corner, x, y, z, mu, out):
+    """Write the share of diffuse light that a place of the air scatters to an observer.
 
     Parameters
     ----------
@@ -88,6 +93,8 @@ def fill_diffuse_share(shadow, diffuse, rings, corner, x, y, z, out):
         Work space.
     x, y, z : float
         The place, in the axes of `Shadow`. [km]
+    mu : float
+        Cosine of the zenith angle there of the ray that looks at it.
     out : ndarray of float64, shape (wavelength,)
         Receives the share.
     """
@@ -98,13 +105,21 @@ def fill_diffuse_share(shadow, diffuse, rings, corner, x, y, z, out):
         fill_share_at(shadow, x, y, z, out)
     if inside == 0.0:
         return
+    steps = 0.5 * (diffuse.share.shape[3] - 1)
+    slope = steps * (1.0 + math.copysign(math.sqrt(min(abs(mu), 1.0)), mu))
+    s = min(int(slope), diffuse.share.shape[3] - 2)
+    slope -= s
     for k in range(out.size):
         value = 0.0
-        for upper in range(2):
-            table = diffuse.share[a + upper]
-            near = table[i, j, k] + v * (table[i, after, k] - table[i, j, k])
-            far = table[i + 1, j, k] + v * (table[i + 1, after, k] - table[i + 1, j, k])
-            value += (w if upper == 1 else 1.0 - w) * (near + u * (far - near))
+        for corner_of in range(4):
+            upper, steeper = corner_of // 2, corner_of % 2
+            weight = (w if upper == 1 else 1.0 - w) * (slope if steeper == 1 else 1.0 - slope)
+            if weight == 0.0:
+                continue
+            table, m = diffuse.share[a + upper], s + steeper
+            near = table[i, j, m, k] + v * (table[i, after, m, k] - table[i, j, m, k])
+            far = table[i + 1, j, m, k] + v * (table[i + 1, after, m, k] - table[i + 1, j, m, k])
+            value += weight * (near + u * (far - near))
         out[k] = value if inside == 1.0 else out[k] + inside * (value - out[k])
 
 
@@ -165,32 +180,39 @@ def fill_corner(diffuse, rings, corner, x, y, z):
 
 
 @kernel
-def sum_sunlight(shadow, places, light, turn, share, out):
+def sum_sunlight(shadow, places, bundle, light, turn, share, out):
     """Sum what emitters send to a receiver of the sunlight that is uncovered at each.
 
     Parameters
     ----------
     shadow : Shadow
         Of the moon.
-    places : ndarray of float64, shape (emitter, 3)
-        In axes of the receiver, from the observer's planet's centre. [km]
+    places : ndarray of float64, shape (emitter, 4)
+        In axes of the receiver, from the observer's planet's centre [km], and the cosine of the
+        zenith angle there of the ray from the receiver.
+    bundle : ndarray of int64, shape (emitter,)
+        To which of the sums each adds.
     light : ndarray of float64, shape (emitter, wavelength)
         What they send with nothing covered.
     turn : ndarray of float64, shape (4, 3)
         Rows that turn the receiver's axes into those of `Shadow`, and the planet's centre.
-    share, out : ndarray of float64, shape (wavelength,)
-        Work space; receives the sum.
+    share : ndarray of float64, shape (wavelength,)
+        Work space.
+    out : ndarray of float64, shape (bundle, wavelength)
+        Receives the sums.
     """
     out[:] = 0.0
     for i in range(places.shape[0]):
         x, y, z = _turned(turn, places[i])
         fill_share_at(shadow, x, y, z, share)
-        for k in range(out.size):
-            out[k] += light[i, k] * share[k]
+        for k in range(share.size):
+            out[bundle[i], k] += light[i, k] * share[k]
 
 
 @kernel
-def sum_diffuse(shadow, diffuse, rings, corner, places, on_ground, light, turn, share, out):
+def sum_diffuse(
+    shadow, diffuse, rings, corner, places, bundle, on_ground, light, turn, share, out
+):  # fmt: skip
     """Sum what emitters send to a receiver of light that was scattered before.
 
     Parameters are those of `sum_sunlight`; `on_ground` says which emitters are on the ground.
@@ -201,9 +223,9 @@ def sum_diffuse(shadow, diffuse, rings, corner, places, on_ground, light, turn, 
         if on_ground[i]:
             fill_ground_share(shadow, diffuse, rings, corner, x, y, z, share)
         else:
-            fill_diffuse_share(shadow, diffuse, rings, corner, x, y, z, share)
-        for k in range(out.size):
-            out[k] += light[i, k] * share[k]
+            fill_diffuse_share(shadow, diffuse, rings, corner, x, y, z, places[i, 3], share)
+        for k in range(share.size):
+            out[bundle[i], k] += light[i, k] * share[k]
 
 
 @kernel

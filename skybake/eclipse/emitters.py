@@ -8,7 +8,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from skybake.eclipse.diffuse import SLOPES
 from skybake.jit.kernel import kernel
+from skybake.optics.delta_m import ScaledMedium
 from skybake.optics.phase import eval_phase
 from skybake.scattering.field import altitude_weight, fill_ground_irradiance, sun_weights
 from skybake.scattering.harmonics import fill_harmonics
@@ -19,10 +21,13 @@ from skybake.transport.trace import MAX_ARC, trace
 
 Array = npt.NDArray[np.float64]
 
-ABOVE, BELOW, AROUND = 11, 5, 12
+ABOVE, BELOW, AROUND = 11, 5, 8
 """Zenith angles above the horizon and below it, and azimuths, of the rays that look around."""
 
-SHORTEST, LONGER = 2.0, 0.15
+TURNS = 16
+"""Azimuths, on one side, over which phase functions are averaged."""
+
+SHORTEST, LONGER = 2.0, 0.1
 """Steps count as one emitter up to this length [km], and to this share of their distance."""
 
 
@@ -31,19 +36,27 @@ class Emitters(NamedTuple):
 
     Attributes
     ----------
-    place : ndarray of float64, shape (emitter, 3)
+    place : ndarray of float64, shape (emitter, 4)
         From the planet's centre: toward the sun's bearing at the receiver, to the right of it,
-        and up. [km]
+        and up [km]; and the cosine of the zenith angle there of the ray from the receiver, the
+        nearest of `SLOPES`.
+    bundle : ndarray of int64, shape (emitter,)
+        Which of the zenith angles at the receiver it is seen at.
     on_ground : ndarray of bool, shape (emitter,)
         Whether it is ground.
     sunlight, diffuse : ndarray of float64, shape (emitter, wavelength)
         What is sent of sunlight, and of light that was scattered before, per unit irradiance.
+    scatter : ndarray of float64, shape (slope, bundle, wavelength)
+        How much of the light of a bundle the receiver scatters on, to an observer whose ray has a
+        slope of `SLOPES`, over the same of all directions.
     """
 
     place: Array
+    bundle: npt.NDArray[np.int64]
     on_ground: npt.NDArray[np.bool_]
     sunlight: Array
     diffuse: Array
+    scatter: Array
 
 
 def look_around(
@@ -62,10 +75,6 @@ def look_around(
     horizontally : bool
         Weigh directions for the irradiance of the horizontal from above; else for the mean
         radiance.
-
-    Notes
-    -----
-    Light that was scattered before is taken as scattered equally in all directions.
     """
     scaled, field = atmosphere.scaled, atmosphere.field
     r = scaled.medium.r_bottom + altitude
@@ -77,26 +86,29 @@ def look_around(
     constituents = len(scaled.medium.extinction)
     phase = eval_phase(scaled.phase[:constituents], nu.ravel())
     phase = np.maximum(phase, 0.0).reshape(*nu.shape, constituents, -1)
-    harmonic = np.empty(field.harmonics.degree.size)
-    fill_harmonics(field.harmonics, 0.0, harmonic)
     samples = allocate_samples(scaled.medium)
     starts = np.stack([np.full(mu.size, r), mu], axis=1)
     wavelengths = scaled.mixture.size
-    scratch = np.empty(constituents), np.empty(wavelengths), np.empty(4)
+    orders = field.harmonics.order + 1
+    scratch = (
+        *(np.empty(constituents), np.empty(wavelengths), np.empty(4)),
+        *(np.empty(field.harmonics.degree.size), np.empty((orders, wavelengths))),
+        np.empty(wavelengths),
+    )
     most = MAX_SAMPLES // 2 + 1
     parts = []
     for i in range(mu.size):
         trace(scaled.medium, atmosphere.shells, MAX_ARC, starts, i, i + 1, samples)
         for q in range(AROUND):
-            place, sunlight, diffuse = (np.empty((most, n)) for n in (3, wavelengths, wavelengths))
+            place, sunlight, diffuse = (np.empty((most, n)) for n in (4, wavelengths, wavelengths))
             count = _emit(
                 scaled.medium,
                 atmosphere.columns,
                 field,
-                float(harmonic[0]),
                 samples,
                 np.array([r, mu[i], mu_s, nu[i, q]]),
                 float(azimuth[q]),
+                SLOPES,
                 np.ascontiguousarray(phase[i, q]),
                 *scratch,
                 place,
@@ -106,10 +118,35 @@ def look_around(
             on_ground = np.zeros(count, np.bool_)
             on_ground[count - int(samples.hits_ground[0]) :] = True
             size = weight[i] / AROUND
-            parts.append(
-                (place[:count], on_ground, size * sunlight[:count], size * diffuse[:count])
-            )
-    return Emitters(*(np.concatenate(each) for each in zip(*parts, strict=True)))
+            bundle = np.full(count, i)
+            light = size * sunlight[:count], size * diffuse[:count]
+            parts.append((place[:count], bundle, on_ground, *light))
+    place, bundle, on_ground, sunlight, diffuse = (
+        np.concatenate(each) for each in zip(*parts, strict=True)
+    )
+    scatter = np.ones((SLOPES.size, ABOVE + BELOW, wavelengths))
+    if not horizontally:
+        scatter = _scatter(scaled, altitude, mu)
+    return Emitters(place, bundle, on_ground, sunlight, diffuse, scatter)
+
+
+def _scatter(scaled: ScaledMedium, altitude: float, mu: Array) -> Array:
+    """Return the `scatter` of an altitude, for light from zenith angles all round."""
+    medium = scaled.medium
+    constituents = len(medium.extinction)
+    turn = math.pi * (np.arange(TURNS) + 0.5) / TURNS
+    sine, sine_in = np.sqrt(1.0 - SLOPES**2), np.sqrt(np.maximum(1.0 - mu**2, 0.0))
+    flat = (sine[:, None] * sine_in)[..., None] * np.cos(turn)
+    nu = np.clip((SLOPES[:, None] * mu)[..., None] + flat, -1.0, 1.0)
+    phase = eval_phase(scaled.phase[:constituents], nu.ravel())
+    phase = np.maximum(phase, 0.0).reshape(*nu.shape, constituents, -1).mean(axis=2)
+    place = math.sqrt(altitude / (medium.r_top - medium.r_bottom)) * (len(medium.density) - 1)
+    nodes = np.arange(len(medium.density))
+    density = np.array([np.interp(place, nodes, each) for each in medium.density.T])
+    amount = density[:, None] * medium.scattering
+    total = np.maximum(amount.sum(axis=0), np.finfo(float).tiny)
+    scattered: Array = 4.0 * math.pi * (phase * amount).sum(axis=2) / total
+    return scattered
 
 
 def _zeniths(r: float, r_bottom: float, *, horizontally: bool) -> tuple[Array, Array]:
@@ -132,8 +169,8 @@ def _zeniths(r: float, r_bottom: float, *, horizontally: bool) -> tuple[Array, A
 
 @kernel
 def _emit(
-    medium, columns, field, uniform, samples, ray, azimuth, phase, column, through, four,
-    place, sunlight, diffuse,
+    medium, columns, field, samples, ray, azimuth, slopes, phase, column, through, four, harmonic,
+    chi, again, place, sunlight, diffuse,
 ):  # fmt: skip
     """Write where a ray's steps and its end on the ground are, and what they send back."""
     r, mu, mu_s, nu = ray[0], ray[1], ray[2], ray[3]
@@ -152,30 +189,29 @@ def _emit(
         mu_s_here = min(max((r * mu_s + t * nu) / radius, -1.0), 1.0)
         is_lit = fill_sun_column(columns, medium.r_bottom, medium.r_top, radius, mu_s_here, column)
         fill_transmittance(medium.extinction, column, through)
-        j = sun_weights(field, mu_s_here, four)
-        low, u = altitude_weight(field, radius - medium.r_bottom)
+        mu_here = min(max((r * mu + t) / radius, -1.0), 1.0)
+        flat = math.sqrt((1.0 - mu_here * mu_here) * (1.0 - mu_s_here * mu_s_here))
+        cosine = (nu - mu_here * mu_s_here) / max(flat, 1e-9)
+        cosine = min(max(cosine, -1.0), 1.0)
+        _scatter_again(
+            field, samples, n, radius - medium.r_bottom, mu_here, mu_s_here, cosine,
+            harmonic, chi, four, again,
+        )  # fmt: skip
         for k in range(through.size):
-            once = again = 0.0
+            once = 0.0
             for c in range(column.size):
                 amount = 0.0
                 for i in range(2):
                     amount += samples.weight[n + i, k] * samples.density[n + i, c]
                 once += amount * medium.scattering[c, k] * phase[c, k]
-                again += amount * field.source[c, 0, k]
-            mean = 0.0
-            for q in range(4):
-                below = field.radiance[low, j + q, 0, k]
-                above = field.radiance[low + 1, j + q, 0, k]
-                mean += four[q] * (below + u * (above - below))
             once = once * through[k] if is_lit else 0.0
-            again = max(again * uniform * mean, 0.0)
             sunlight[count, k] += once
-            diffuse[count, k] += again
-            mass += once + again
-            moment += (once + again) * t
+            diffuse[count, k] += again[k]
+            mass += once + again[k]
+            moment += (once + again[k]) * t
         middle = moment / mass if mass > 0.0 else t
-        place[count, 0], place[count, 1] = middle * ahead, middle * right
-        place[count, 2] = r + middle * mu
+        _put(place[count], middle * ahead, middle * right, r + middle * mu)
+        place[count, 3] = _nearest_slope(slopes, mu_here)
     count += 1
     if samples.hits_ground[0]:
         t = samples.length[0]
@@ -190,6 +226,53 @@ def _emit(
         fill_ground_irradiance(field, mu_s_here, four, through)
         for k in range(through.size):
             diffuse[count, k] *= through[k]
-        place[count, 0], place[count, 1], place[count, 2] = t * ahead, t * right, r + t * mu
+        _put(place[count], t * ahead, t * right, r + t * mu)
         count += 1
     return count
+
+
+@kernel
+def _scatter_again(
+    field, samples, n, altitude, mu, mu_s, cosine, harmonic, chi, four, out
+):  # fmt: skip
+    """Write what a step scatters toward the receiver of light that was scattered before."""
+    j = sun_weights(field, mu_s, four)
+    low, u = altitude_weight(field, altitude)
+    fill_harmonics(field.harmonics, mu, harmonic)
+    for k in range(out.size):
+        out[k] = 0.0
+        for degree in range(chi.shape[0]):
+            chi[degree, k] = 0.0
+            for c in range(field.source.shape[0]):
+                amount = samples.weight[n, k] * samples.density[n, c]
+                amount += samples.weight[n + 1, k] * samples.density[n + 1, c]
+                chi[degree, k] += amount * field.source[c, degree, k]
+    for p in range(harmonic.size):
+        m = field.harmonics.azimuthal[p]
+        # The Chebyshev polynomial of the azimuth's cosine.
+        before, value = cosine, 1.0
+        for _ in range(m):
+            before, value = value, 2.0 * cosine * value - before
+        value *= harmonic[p]
+        degree = field.harmonics.degree[p]
+        for q in range(4):
+            below, above = field.radiance[low, j + q, p], field.radiance[low + 1, j + q, p]
+            weight = four[q] * value
+            for k in range(out.size):
+                out[k] += weight * chi[degree, k] * (below[k] + u * (above[k] - below[k]))
+    for k in range(out.size):
+        out[k] = max(out[k], 0.0)
+
+
+@kernel
+def _put(out, x, y, z):
+    out[0], out[1], out[2], out[3] = x, y, z, -1.0
+
+
+@kernel
+def _nearest_slope(slopes, mu):
+    nearest = slopes[0]
+    for each in slopes:
+        if abs(each - mu) < abs(nearest - mu):
+            nearest = each
+    return nearest

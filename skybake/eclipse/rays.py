@@ -142,7 +142,9 @@ class _Room:
         if field.altitude.size > 1:
             scratch = allocate_scratch(field, fans)
             peaks = one.horizon_peaks
-            add_diffuse(field, self._moments, peaks, scaled, *batch, self.diffuse, scratch, diffuse)
+            light = field, self._moments, peaks, scaled
+            stokes = np.empty((0, 2 * diffuse.shape[1]), np.float32)
+            add_diffuse(*light, *batch, self.diffuse, scratch, diffuse, stokes)
         if one.aureole.source.shape[2] > 0:
             aureole = allocate_aureole_scratch(scaled)
             add_aureole(one.aureole, field, scaled, *batch, self.sunlit, aureole, diffuse)
@@ -182,7 +184,9 @@ def _dim(
             if is_covered:
                 x, y, z = t * dx, t * dy, t * dz
                 fill_share_at(shadow, x, y, z, local)
-                fill_diffuse_share(shadow, diffuse, rings, corner, x, y, z, mean)
+                up = z + diffuse.planet
+                mu = (x * dx + y * dy + up * dz) / math.sqrt(x * x + y * y + up * up)
+                fill_diffuse_share(shadow, diffuse, rings, corner, x, y, z, mu, mean)
             else:
                 local[:] = 1.0
                 mean[:] = 1.0

@@ -35,6 +35,9 @@ Show = Callable[[npt.NDArray[np.float32], Tagged, float], None]
 
 _WHITE = np.float32(1e30)
 
+PNG_LEVEL = 4
+"""Of a sky it makes files a tenth larger than the library's level 6 in half the time."""
+
 _END_OF_PNG = b"IEND\xaeB`\x82"
 
 
@@ -80,7 +83,13 @@ def write_preview(
 
 
 def write_picture(
-    path: Path, width: int, height: int, bands: Iterable[npt.NDArray[np.uint8]]
+    path: Path,
+    width: int,
+    height: int,
+    bands: Iterable[npt.NDArray[np.uint8]],
+    *,
+    texts: Mapping[str, str] | None = None,
+    files: WholeFiles | None = None,
 ) -> None:
     """Write code values of sRGB as PNG.
 
@@ -92,14 +101,21 @@ def write_picture(
         Size of the picture. [pixel]
     bands : iterable of ndarray of uint8, shape (row, width, 3)
         Rows after rows, from top to bottom.
+    texts : mapping of str to str, optional
+        What the file is to hold besides the picture.
+    files : WholeFiles, optional
+        The files that it is to appear with; by default it appears when it is written.
 
     Raises
     ------
     OutputError
         If the file cannot be written.
     """
+    if files is not None:
+        _write_png(path, files.add(path), (width, height), bands, texts)
+        return
     with replace_when_whole(path) as temporary:
-        _write_png(path, temporary, (width, height), bands)
+        _write_png(path, temporary, (width, height), bands, texts)
 
 
 @contextmanager
@@ -187,6 +203,7 @@ def _write_png(
         spec[name] = text
     spec["oiio:ColorSpace"] = "srgb_rec709_display"
     spec["oiio:dither"] = 1
+    spec["png:compressionLevel"] = PNG_LEVEL
     output = OpenImageIO.ImageOutput.create(str(temporary))
     if output is None:
         raise write_error(path, temporary, OpenImageIO.geterror())

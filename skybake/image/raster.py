@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from skybake.image.discs import shown_moon, shown_sun
 from skybake.image.layers import RGB, Layer, Layers, Pixels
 from skybake.image.scene import Scene
 from skybake.image.splat import Splat
@@ -21,12 +22,18 @@ CHANNELS = {
     "sun": RGB,
     "apart": (*RGB, "clouded.R", "clouded.G", "clouded.B", "A"),
     "transmittance": RGB,
+    "moon": RGB,
     "stars": RGB,
+    "stokes": ("S1.R", "S1.G", "S1.B", "S2.R", "S2.G", "S2.B"),
 }
 """Layers that a raster fills: the sky with its clouds; the sun's disc; the clear sky, the sky with
-its clouds, and the share that they hide; the transmittance of the air to space; and stars."""
+its clouds, and the share that they hide; the transmittance of the air to space; the Moon's disc;
+stars; and the polarisation of the sky."""
 
 Evaluate = Callable[[np.ndarray, np.ndarray, np.ndarray], Pixels]
+
+LOOKS_AT_ONCE = 16
+"""Rows whose directions a thread finds at a time."""
 
 LIMB_SAMPLES = 16
 LIMB_COARSE = 0.05
@@ -45,7 +52,7 @@ class Raster:
     Attributes
     ----------
     peak : float
-        Largest value that the sun's disc or a star adds to a pixel.
+        Largest value that a disc or a star adds to a pixel.
     """
 
     def __init__(self, scene: Scene, canvas: Canvas) -> None:
@@ -94,7 +101,10 @@ class _Shown:
     def __init__(self, scene: Scene, part: Part) -> None:
         self._scene, self._part = scene, part
         self._chart = part.chart
-        self._points: dict[str, Splat | StarSpots] = {"sun": Splat(scene, part.chart)}
+        self._points: dict[str, Splat | StarSpots] = {
+            "sun": Splat(shown_sun(scene), part.chart),
+            "moon": Splat(shown_moon(scene), part.chart),
+        }
         if "stars" in scene.layer_names:
             from skybake.image.starry import StarSpots
 
@@ -157,17 +167,24 @@ def _transmittance_pixels(scene: Scene, chart: Chart, first: int, last: int) -> 
     return _smooth_pixels(scene, chart, first, last, partial(evaluate_transmittance, scene))
 
 
+def _stokes_pixels(scene: Scene, chart: Chart, first: int, last: int) -> Pixels:
+    from skybake.image.polarised import evaluate_stokes
+
+    evaluate = _seen(scene, partial(evaluate_stokes, scene))
+    return _smooth_pixels(scene, chart, first, last, evaluate)
+
+
 _EVALUATE: dict[str, Callable[[Scene, Chart, int, int], Pixels]] = {
     "sky": sky_pixels,
     "apart": _apart_pixels,
     "transmittance": _transmittance_pixels,
+    "stokes": _stokes_pixels,
 }
 
 
 def _smooth_pixels(scene: Scene, chart: Chart, first: int, last: int, evaluate: Evaluate) -> Pixels:
-    zenith, bearing = chart.angles(first, last)
+    zenith, bearing, footprint = _looks(scene, chart, first, last)
     azimuth = bearing - scene.sun_bearing
-    footprint = chart.footprints(first, last)
     pixels = evaluate(zenith, azimuth, footprint)
     limb = _limb(scene, zenith, footprint)
     if limb.any():
@@ -176,6 +193,26 @@ def _smooth_pixels(scene: Scene, chart: Chart, first: int, last: int, evaluate: 
     if nowhere is not None:
         pixels[nowhere] = 0.0
     return pixels
+
+
+def _looks(
+    scene: Scene, chart: Chart, first: int, last: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """As of a chart, found by all workers where each pixel has directions of its own."""
+    if chart.is_separable or last - first <= LOOKS_AT_ONCE:
+        return chart.looks(first, last)
+    found = {}
+
+    def work(begin: int, end: int) -> None:
+        found[begin] = chart.looks(first + begin, first + end)
+
+    scene.workers.run_rows(last - first, work, chunk=LOOKS_AT_ONCE)
+    # What all rows share is in each part.
+    zenith, bearing, footprint = (
+        each[0] if len(each[0]) < LOOKS_AT_ONCE else np.concatenate(each)
+        for each in zip(*(found[begin] for begin in sorted(found)), strict=True)
+    )
+    return zenith, bearing, footprint
 
 
 def _limb(scene: Scene, zenith: np.ndarray, footprint: np.ndarray) -> np.ndarray:

@@ -14,7 +14,6 @@ from skybake.luts.settings import TableSettings
 from skybake.luts.table import Table, texels
 from skybake.luts.transmittance import colour_shares
 from skybake.optics.medium import Array
-from skybake.projection.frame import look_frame
 from skybake.sky.skylight import Segments, Skylight
 
 ABOVE_GROUND = 1e-6
@@ -35,9 +34,9 @@ def screen_directions(settings: TableSettings, x: Array, y: Array) -> Array:
     x, y : ndarray of float64, broadcast to shape (...)
         From 0 at the left and the top to 1 at the right and the bottom.
     """
-    frame = look_frame(settings.azimuth, settings.elevation)
-    right = settings.half_width * (2.0 * x[..., None] - 1.0)
-    up = settings.half_height * (1.0 - 2.0 * y[..., None])
+    frame, (across, above) = settings.frame, settings.shift
+    right = across + settings.half_width * (2.0 * x[..., None] - 1.0)
+    up = above + settings.half_height * (1.0 - 2.0 * y[..., None])
     # Not the length of the sum, whose rounding would differ between the left and the right.
     length = np.sqrt(1.0 + right**2 + up**2)
     unit: Array = (frame.forward + right * frame.right + up * frame.up) / length

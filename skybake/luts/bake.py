@@ -26,7 +26,7 @@ from skybake.luts.multiple_scattering import multiple_scattering_table
 from skybake.luts.parametrisations import TABLES, find_mappings
 from skybake.luts.settings import TableSettings
 from skybake.luts.shading import LANGUAGES
-from skybake.luts.sky_view import sky_view_table
+from skybake.luts.sky_view import error_near_sun, sky_view_table
 from skybake.luts.table import Table
 from skybake.luts.transmittance import transmittance_table
 from skybake.version import __version__
@@ -42,10 +42,13 @@ class TableSet:
         By name: those of `skybake.luts.parametrisations.TABLES`, and ``aerial_transmittance``.
     constants : Constants
         Of formulas and code.
+    error_near_sun : dict of str to float or None
+        Of the view of the sky, see `skybake.luts.sky_view.error_near_sun`.
     """
 
     tables: dict[str, Table]
     constants: Constants
+    error_near_sun: dict[str, float] | None
 
     def code(self, heading: str) -> dict[str, str]:
         """Return the code that looks them up, by language; its first lines are a comment."""
@@ -67,10 +70,13 @@ class BakedTables:
         All of them.
     recipe_hash : str
         Of the recipe that they state.
+    error_near_sun : dict of str to float or None
+        As of `TableSet`.
     """
 
     files: tuple[Path, ...]
     recipe_hash: str
+    error_near_sun: dict[str, float] | None
 
 
 def check_scene(scene: Scene) -> None:
@@ -135,13 +141,15 @@ def make_tables(scene: Scene, settings: TableSettings | None = None) -> TableSet
         sky_view_table(scene, *where("sky_view")),
         *aerial_tables(scene, settings, mappings["aerial_perspective"], constants),
     )
+    tables = {table.name: table for table in made}
     return TableSet(
-        tables={table.name: table for table in made},
+        tables=tables,
         constants={
             **known_constants(constants),
             **light_constants(scene),
             **camera_constants(settings),
         },
+        error_near_sun=error_near_sun(scene, tables["sky_view"], constants),
     )
 
 
@@ -173,6 +181,7 @@ def bake_tables(
     with folder_of_tables(folder):
         made = make_tables(scene, settings)
         description = describe_tables(scene, settings, made.tables, file_names(), made.constants)
+        description["tables"]["sky_view"]["error_near_sun"] = made.error_near_sun
         encoding = scene.settings.encoding
         spec = MapSpec(
             *(1, 1, encoding.space, encoding.white_luminance),
@@ -187,7 +196,9 @@ def bake_tables(
         files = write_tables(
             folder, made.tables, description, made.code(_heading(scene, settings)), spec
         )
-    return BakedTables(files=files, recipe_hash=description["recipe_hash"])
+    return BakedTables(
+        files=files, recipe_hash=description["recipe_hash"], error_near_sun=made.error_near_sun
+    )
 
 
 def _heading(scene: Scene, settings: TableSettings) -> str:

@@ -12,7 +12,6 @@ from skybake.luts.mapping import Mapping
 from skybake.luts.parametrisations import CONSTANTS, LEAST_SUN_COSINE
 from skybake.luts.settings import TableSettings
 from skybake.luts.shading import Constant
-from skybake.projection.frame import look_frame
 
 Constants = dict[str, tuple[Constant, str]]
 """Value and meaning by name."""
@@ -79,13 +78,23 @@ def light_constants(scene: Scene) -> Constants:
 
 def camera_constants(settings: TableSettings) -> Constants:
     """Return the camera of the volume."""
-    frame = look_frame(settings.azimuth, settings.elevation)
+    frame = settings.frame
     return {
-        "CAMERA_RIGHT": (_triple(frame.right), "unit vector to the right of the volume's screen"),
-        "CAMERA_UP": (_triple(frame.up), "unit vector to its top"),
-        "CAMERA_FORWARD": (_triple(frame.forward), "unit vector to its middle"),
-        "CAMERA_HALF_WIDTH": (settings.half_width, "tangent of half its horizontal angle"),
-        "CAMERA_HALF_HEIGHT": (settings.half_height, "tangent of half its vertical angle"),
+        "CAMERA_RIGHT": (
+            _triple(frame.right),
+            "unit vector along the volume's screen to its right",
+        ),
+        "CAMERA_UP": (_triple(frame.up), "unit vector along it to its top"),
+        "CAMERA_FORWARD": (
+            _triple(frame.forward),
+            "unit vector at right angles to it; to its middle if the lens is not shifted",
+        ),
+        "CAMERA_HALF_WIDTH": (settings.half_width, "half its width, at distance 1"),
+        "CAMERA_HALF_HEIGHT": (settings.half_height, "half its height, at distance 1"),
+        "CAMERA_SHIFT": (
+            settings.shift,
+            "where its middle is, at distance 1: to the right of the axis, and above it",
+        ),
     }
 
 

@@ -62,6 +62,8 @@ def tables_recipe(scene: Scene, settings: TableSettings) -> dict[str, Any]:
             "aspect": settings.aspect,
             "look_azimuth_deg": degrees(settings.azimuth),
             "look_elevation_deg": degrees(settings.elevation),
+            **({"roll_deg": degrees(settings.roll)} if settings.roll else {}),
+            **({"lens_shift": list(settings.shift)} if any(settings.shift) else {}),
             "far_km": settings.far,
             "pixel": settings.pixel,
         },

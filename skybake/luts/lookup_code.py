@@ -48,8 +48,8 @@ def luts_sun(transmittance: plane, direction: vec3) -> vec3:
 def luts_screen(direction: vec3) -> vec2:
     """Place on the screen of the volume's camera, 0 to 1 from the left and from the top."""
     ahead = dot(direction, CAMERA_FORWARD)
-    right = dot(direction, CAMERA_RIGHT) / (ahead * CAMERA_HALF_WIDTH)
-    up = dot(direction, CAMERA_UP) / (ahead * CAMERA_HALF_HEIGHT)
+    right = (dot(direction, CAMERA_RIGHT) / ahead - CAMERA_SHIFT.x) / CAMERA_HALF_WIDTH
+    up = (dot(direction, CAMERA_UP) / ahead - CAMERA_SHIFT.y) / CAMERA_HALF_HEIGHT
     return vec2(0.5 + 0.5 * right, 0.5 - 0.5 * up)
 
 def luts_aerial_weight(distance: float) -> float:

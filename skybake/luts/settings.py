@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from skybake.errors import InputError
 from skybake.luts.parametrisations import PARAMETRISATIONS
-from skybake.projection.frame import check_look
+from skybake.projection.camera import Camera
+from skybake.projection.frame import Frame, check_look, look_frame, roll_frame
 from skybake.projection.perspective import WIDEST
 from skybake.scattering.segments import MAX_DISTANCES
 
@@ -37,8 +38,11 @@ class TableSettings:
         Width, height and depth of the volume. [texel]
     fov, aspect : float
         Angle that the width of the volume's camera covers [rad], and width over height.
-    azimuth, elevation : float
-        Compass bearing and height of where it looks. [rad]
+    azimuth, elevation, roll : float
+        Compass bearing and height of where it looks, and how far it is turned, see `roll_frame`.
+        [rad]
+    shift : (float, float)
+        Where on the plane at distance 1 the middle of its picture is: right of its axis, and above.
     far : float
         Distance of the volume's far end. [km]
     pixel : {"float", "half"}
@@ -54,6 +58,8 @@ class TableSettings:
     aspect: float = 16.0 / 9.0
     azimuth: float = math.pi
     elevation: float = 0.0
+    roll: float = 0.0
+    shift: tuple[float, float] = (0.0, 0.0)
     far: float = 128.0
     pixel: str = "float"
 
@@ -77,6 +83,29 @@ class TableSettings:
         _check_range("aspect", self.aspect, LEAST_ASPECT, LARGEST_ASPECT, "")
         _check_range("far", self.far, NEAREST_FAR, FARTHEST_FAR, " km")
         check_look(self.azimuth, self.elevation)
+        if not all(map(math.isfinite, (self.roll, *self.shift))):
+            raise InputError(
+                f"camera: roll and shift must be finite, got {self.roll:g}, {self.shift}"
+            )
+
+    def seen_by(self, camera: Camera) -> TableSettings:
+        """Return the same with a given camera, whose position does not matter here.
+
+        Raises
+        ------
+        InputError
+            If its field of view or its proportions are out of range.
+        """
+        azimuth, elevation, roll = camera.angles
+        return replace(
+            self,
+            fov=2.0 * math.atan(camera.half_width),
+            aspect=camera.half_width / camera.half_height,
+            azimuth=azimuth,
+            elevation=elevation,
+            roll=roll,
+            shift=camera.shift,
+        )
 
     @property
     def sizes(self) -> dict[str, tuple[int, ...]]:
@@ -87,6 +116,11 @@ class TableSettings:
             "sky_view": self.sky_view_size,
             "aerial_perspective": self.aerial_size,
         }
+
+    @property
+    def frame(self) -> Frame:
+        """Where the camera's right, its up and its axis look."""
+        return roll_frame(look_frame(self.azimuth, self.elevation), self.roll)
 
     @property
     def half_width(self) -> float:

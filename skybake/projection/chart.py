@@ -27,11 +27,14 @@ class Chart(ABC):
         [pixel]
     wraps : bool
         Whether the last column is the neighbour of the first.
+    is_separable : bool
+        Whether rows share their zenith angles, and columns their bearings.
     """
 
     width: int
     height: int
     wraps: ClassVar[bool] = False
+    is_separable: ClassVar[bool] = False
 
     @abstractmethod
     def angles(self, first: int, last: int) -> tuple[Array, Array]:
@@ -54,6 +57,10 @@ class Chart(ABC):
         ndarray of float64, shape (1, 1), (row, 1) or (row, column)
             [rad]
         """
+
+    def looks(self, first: int, last: int) -> tuple[Array, Array, Array]:
+        """Return `angles` and `footprints`."""
+        return (*self.angles(first, last), self.footprints(first, last))
 
     @abstractmethod
     def solid_angles(self, first: int, last: int) -> Array:

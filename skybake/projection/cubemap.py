@@ -96,6 +96,10 @@ class FaceChart(GnomonicChart):
         """Extent of a texel in zenith angle, the mean over a face."""
         return np.full((1, 1), math.pi / 2.0 / self.width)
 
+    def looks(self, first: int, last: int) -> tuple[Array, Array, Array]:
+        """Return `angles` and `footprints`."""
+        return (*self.angles(first, last), self.footprints(first, last))
+
 
 @dataclass(frozen=True)
 class Cubemap(Projection):

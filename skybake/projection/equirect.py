@@ -99,6 +99,7 @@ class EquirectChart(Chart):
     """
 
     wraps: ClassVar[bool] = True
+    is_separable: ClassVar[bool] = True
 
     def __init__(self, width: int, rows: str = "centres") -> None:
         self.width, self.height = width, width // 2

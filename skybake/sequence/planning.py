@@ -13,7 +13,9 @@ from skybake.ephemeris.moon import Moon
 from skybake.ephemeris.place import check_planet
 from skybake.errors import ArgumentError, InputError
 from skybake.image.eclipsing_moon import eclipsing_moon
+from skybake.image.moonlight import Moonlight, moonlight_at
 from skybake.image.night import Night, night_at
+from skybake.image.night_scale import night_scaled
 from skybake.image.settings import MapSettings
 from skybake.image.sun_distance import sun_distance as distance_of_sun
 from skybake.optics.changes import PresetChanges
@@ -40,6 +42,7 @@ def plan_sequence(
     eclipses: bool = True,
     output: str | Path | None = None,
     preview: str | Path | bool = False,
+    night_scale: bool = False,
 ) -> Plan:
     """Return all frames of a sequence; nothing is computed yet.
 
@@ -78,6 +81,9 @@ def plan_sequence(
         Pattern of the maps' files, as ``sky.####.exr``; by default named after the world.
     preview : str, Path or bool, optional
         Pattern of the pictures' files, ``.png``; True for pictures beside the maps.
+    night_scale : bool, optional
+        Let 1.0 stand for what suits a night, see `skybake.image.night_scale`, if all frames are
+        of one.
 
     Raises
     ------
@@ -130,6 +136,7 @@ def plan_sequence(
             None if drift is None or not planets[world].clouds else drift[i],
             moon,
             settings.night if moment is None else night_at(settings.night, moment),
+            settings.moonlight if moment is None else moonlight_at(settings.moonlight, moment),
         )
         planned.append(
             Frame(
@@ -142,6 +149,9 @@ def plan_sequence(
                 attributes={} if moment is None else moment.attributes,
             )
         )
+    if night_scale:
+        scaled = night_scaled([frame.settings for frame in planned])
+        planned = [replace(frame, settings=own) for frame, own in zip(planned, scaled, strict=True)]
     return Plan(planets, tuple(planned), output, exposure_curve)
 
 
@@ -252,6 +262,7 @@ def _settings_at(
     cloud_time: float | None,
     moon: Moon | None,
     night: Night,
+    moonlight: Moonlight,
 ) -> MapSettings:
     """Return settings with what a frame has of its own; None leaves a value as it is.
 
@@ -268,4 +279,4 @@ def _settings_at(
     if ev is not None:
         encoding = replace(encoding, ev=ev)
     clouds = settings.clouds if cloud_time is None else replace(settings.clouds, time=cloud_time)
-    return MapSettings(view, lighting, encoding, clouds, night)
+    return MapSettings(view, lighting, encoding, clouds, night, moonlight, settings.sensor)

@@ -107,7 +107,7 @@ def test_far_away_the_air_is_the_sky():
     far = Depths(np.full(SIZE[::-1], 5000.0, np.float32), 1.0, False)
     air = air_before(made, lens_of(camera, SIZE), far)
     window = (0, 0, *SIZE)
-    sky = Behind(made, camera, SIZE, window).sky()
+    sky = Behind(made, camera, SIZE, window).sky
     above = rays(camera)[..., 1] > 0.02
     np.testing.assert_allclose(air.light[above], sky[above], rtol=3e-3)
 

@@ -91,3 +91,19 @@ def test_a_thing_at_the_camera_or_nowhere_keeps_clear_air(below):
     clear = air_before(below, look, depths)
     clouded = with_clouds(below, below.cloudscape, look, depths, clear)
     np.testing.assert_array_equal(clouded.light, clear.light)
+
+
+def test_a_thing_sinks_into_a_deck_by_and_by(above):
+    """By its distance, not when it is behind the middle of what is seen of the deck."""
+    look, columns = lens(-80.0), np.linspace(7.1, 7.9, WIDTH)
+    depths = Depths(np.tile(columns, (HEIGHT, 1)).astype(np.float32), 1.0, is_planar=False)
+    clear = air_before(above, look, depths)
+    clouded = with_clouds(above, above.cloudscape, look, depths, clear)
+    share = (clouded.passing / clear.passing).mean(axis=-1)
+    assert share[:, 0].min() > 0.9
+    assert share[:, -1].max() < 0.2
+    assert ((share > 0.15) & (share < 0.85)).any(axis=1).sum() > HEIGHT // 3
+    mean = share.mean(axis=0)
+    assert (np.diff(mean) < 0.02).all()
+    # The deck gets brighter as more of it is before the thing.
+    assert clouded.light[:, -1].mean() > 3.0 * clouded.light[:, 0].mean()

@@ -280,3 +280,24 @@ def test_wrong_use_is_told_in_a_line(scene, arguments, problem):
     assert result.exit_code == 2
     assert problem in " ".join(result.stderr.split())
     assert "out.exr" not in listing(scene)
+
+
+ECLIPSE = ("--time", "2026-08-12T18:00Z", "--lat", "43.3713", "--lon=-8.396")
+
+
+def test_a_time_of_an_eclipse_is_refused(scene):
+    result = invoke(
+        "aerial", "--beauty", "in.exr", "--camera", "camera.json", *ECLIPSE, "-o", "o.exr"
+    )
+    assert result.exit_code == 1
+    assert result.stderr.splitlines()[-1].startswith("skybake: time: sun must not be in eclipse")
+    assert not (scene / "o.exr").exists()
+
+
+@pytest.mark.usefixtures("warm")
+def test_at_night_the_lights_that_are_not_in_the_air_are_told(scene):
+    given = ("--beauty", "in.exr", "--camera", "camera.json", "--sun=-30deg", "-q", "-o", "o.exr")
+    result = invoke("aerial", *given)
+    assert result.exit_code == 0
+    assert "warning: sun is more than 18 degrees below the horizon" in result.stderr
+    assert (scene / "o.exr").exists()

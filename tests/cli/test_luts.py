@@ -10,8 +10,15 @@ import pytest
 
 from skybake.commands.luts import luts
 from skybake.commands.options import choices
+from skybake.image.scene import Scene
+from skybake.image.settings import map_settings
 from skybake.luts import parametrisations, settings
+from skybake.luts.aerial_perspective import air_segments
 from skybake.luts.files import file_names
+from skybake.preset import load_preset
+from skybake.projection.camera import camera_from_angles
+from skybake.projection.camera_file import load_camera
+from tests.aerial.pictures import write_exr
 from tests.cli.runs import AS_A_USER, invoke, listing, run
 from tests.luts.sets import read_texture
 
@@ -69,6 +76,80 @@ def test_the_same_command_writes_the_same_bytes(tmp_path):
     assert digests[0] == digests[1]
 
 
+ANGLES = {"azimuth": 215, "elevation": 4, "roll": 10, "fov": 50, "aspect": 1.5}
+
+
+def test_a_camera_of_a_file_is_that_of_the_volume(tmp_path):
+    """Roll and lens shift too, and its height is added."""
+    told = {**ANGLES, "position": [3.0, 120.0, 0.0], "lens_shift": [0.1, -0.05]}
+    (tmp_path / "camera.json").write_text(json.dumps(told))
+    given = ("--camera", tmp_path / "camera.json", "--altitude", "1km")
+    made = invoke("luts", *WORLD, *SMALL, *given, "-q", "-o", tmp_path / "sky")
+    assert made.exit_code == 0, made.output
+    about = json.loads((tmp_path / "sky" / "luts.json").read_text())
+    known = {name: np.array(one["value"]) for name, one in about["constants"].items()}
+    camera = load_camera(tmp_path / "camera.json")
+    assert known["OBSERVER_ALTITUDE"] == pytest.approx(1.12)
+    axes = [known[f"CAMERA_{name}"] for name in ("RIGHT", "UP", "FORWARD")]
+    np.testing.assert_allclose(axes, camera.frame, atol=1e-12)
+    np.testing.assert_allclose(known["CAMERA_SHIFT"], camera.shift, rtol=1e-12)
+    halves = known["CAMERA_HALF_WIDTH"], known["CAMERA_HALF_HEIGHT"]
+    assert halves == pytest.approx((camera.half_width, camera.half_height))
+    # The first texel of the volume is where these constants say, up and to the left.
+    right, up = camera.shift[0] - 0.75 * halves[0], camera.shift[1] + 2.0 / 3.0 * halves[1]
+    ray = camera.frame[2] + right * camera.frame[0] + up * camera.frame[1]
+    view = map_settings(sun_elevation=math.radians(30.0), altitude=1.12)
+    scene = Scene(load_preset(WORLD[1]), view)
+    texels = read_texture(tmp_path / "sky" / "aerial_perspective.ktx2")
+    distance = np.array([128.0 * (0.5 / 5.0) ** 2])
+    light = air_segments(scene, (ray / np.linalg.norm(ray))[None], distance).radiance
+    expected = light[0, 0] @ scene.rgb_weights
+    np.testing.assert_allclose(texels[0, 0, 0, :3], expected, rtol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("told", "line"),
+    [
+        ({**ANGLES, "fov": 175}, "camera.json: fov: must be greater than 0deg and at most 170deg"),
+        ({**ANGLES, "aspect": 30}, "camera.json: aspect: must be from 0.05 to 20, got 30"),
+        ({**ANGLES, "position": [0, -5, 0]}, "altitude: must be at least 0 m, got -5 m with that"),
+    ],
+)
+def test_a_camera_that_is_out_of_range_is_one_line_and_leaves_nothing(tmp_path, told, line):
+    (tmp_path / "camera.json").write_text(json.dumps(told))
+    given = ("--camera", tmp_path / "camera.json")
+    made = invoke("luts", *WORLD, *SMALL, *given, "-o", tmp_path / "sky")
+    assert (made.exit_code, len(made.stderr.splitlines())) == (1, 1)
+    assert line in made.stderr
+    assert listing(tmp_path) == ["camera.json"]
+
+
+def test_attributes_of_a_picture_tell_the_camera_and_its_proportions(tmp_path):
+    turned = camera_from_angles(math.radians(200.0), 0.1, 0.0, math.radians(50.0), 1.6)
+    frame = turned.frame
+    world = np.eye(4)
+    # Row vectors, and OpenEXR's cameras look along +Z.
+    world[:3, :3] = frame.T
+    plane = {"R": np.zeros((40, 64))}
+    write_exr(tmp_path / "in.exr", plane, worldToCamera=world)
+    given = ("--camera", tmp_path / "in.exr", "--fov", "50deg")
+    made = invoke("luts", *WORLD, *SMALL, *given, "-q", "-o", tmp_path / "sky")
+    assert made.exit_code == 0, made.output
+    recipe = json.loads((tmp_path / "sky" / "luts.json").read_text())["recipe"]["tables"]
+    assert recipe["look_azimuth_deg"] % 360.0 == pytest.approx(200.0, abs=1e-4)
+    assert recipe["aspect"] == pytest.approx(1.6)
+    assert recipe["fov_deg"] == pytest.approx(50.0)
+
+
+def test_the_error_near_the_sun_is_stated_and_told_of_where_it_is_large(tmp_path):
+    made = invoke("luts", "--preset", "earth", *SMALL, "--sun", "40deg", "-o", tmp_path)
+    assert made.exit_code == 0, made.output
+    about = json.loads((tmp_path / "luts.json").read_text())["tables"]["sky_view"]
+    assert about["error_near_sun"]["within_deg"] == 2.0
+    assert about["error_near_sun"]["largest_relative"] > 0.3
+    assert "of the sun; --sky-view-size 32x24" in made.stdout
+
+
 def test_a_time_and_a_place_give_the_sun(tmp_path):
     moment = ("--time", "2026-06-21T10:00Z", "--lat", "48.85", "--lon", "2.35")
     made = invoke("luts", "--preset", "earth", *SMALL, *moment, "-q", "-o", tmp_path)
@@ -93,6 +174,14 @@ def test_a_time_and_a_place_give_the_sun(tmp_path):
         (("--aspect", "16:9:4"), 2, "'--aspect': must be such as 16:9 or 1.778, got '16:9:4'"),
         (("--aspect", "1000"), 2, "--aspect: must be from 0.05 to 20, got 1000"),
         (("--far", "0m"), 2, "--far: must be from 0.001 to 100000 km, got 0 km"),
+        (
+            ("--time", "2026-08-12T18:00Z", "--lat", "43.3713", "--lon=-8.396"),
+            1,
+            "time: sun must not be in eclipse, in whose shadow air has another light, got ",
+        ),
+        (("--camera-up", "z"), 2, "--camera-up: needs --camera"),
+        (("--camera", "none.json"), 1, "none.json"),
+        (("--camera", "a.json", "--look", "1,2"), 2, "--look: cannot be combined with --camera"),
         (("--method", "march"), 2, "'march' is not one of 'full', 'hillaire'"),
     ],
 )

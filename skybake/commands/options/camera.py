@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from skybake.commands.options import choices, values
+from skybake.errors import InputError
 
 if TYPE_CHECKING:
     from skybake.projection.camera import Camera
@@ -40,8 +41,8 @@ aim_option = click.option(
     metavar="AT",
     type=aim,
     show_default="horizon",
-    help="What is in the middle: sun; horizon or limb, with a comma and a bearing, or else toward "
-    "the sun; planet, all of it from afar; or AZIMUTH,ELEVATION.",
+    help="What is in the middle: sun; moon; horizon or limb, with a comma and a bearing, or else "
+    "toward the sun; planet, all of it from afar; or AZIMUTH,ELEVATION.",
 )
 
 camera_option = click.option(
@@ -111,3 +112,19 @@ def camera_from_file(
         unit=METRE if unit is None else unit,
         up=up or "y",
     )
+
+
+def altitude_with(camera: Camera, altitude: float) -> float:
+    """Return the altitude of a camera over the ground that its world stands on. [km]
+
+    Raises
+    ------
+    InputError
+        If it is below the ground.
+    """
+    total = altitude + camera.position[1]
+    if total < 0.0:
+        raise InputError(
+            f"altitude: must be at least 0 m, got {total * 1e3:g} m with that of the camera"
+        )
+    return total

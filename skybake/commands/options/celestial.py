@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
 DAYS_FROM_TODAY = {"yesterday": -1, "today": 0, "tomorrow": 1}
 
+# Of a square arcsecond: the brightest and the natural zenith, and of 1 cd/m2. [mag]
+_BRIGHTEST_ZENITH, _NATURAL_ZENITH, _CANDELA_MAGNITUDE = 13.0, 22.0, 12.58
+
 # As of star.distance_au in presets. [au]
 _NEAREST, _FARTHEST = 1e-3, 1e5
 
@@ -62,6 +65,37 @@ def stars(text: str) -> float | str:
         ) from None
 
 
+def light_pollution(text: str) -> tuple[float, float | None]:
+    """Read ``20mag``, ``1.5mcd`` or ``off``, with the bearing of a city as ``20mag,90deg``.
+
+    Returns
+    -------
+    luminance : float
+        Of the zenith by lamps; a magnitude is that of all its light, of which a natural sky has
+        that of 22 mag. [cd m⁻²]
+    azimuth : float or None
+        [rad]
+    """
+    if text == "off":
+        return 0.0, None
+    level, comma, where = text.partition(",")
+    found = re.fullmatch(r"(\d+(?:\.\d*)?|\.\d+)(mag|mcd)", level.strip(), re.ASCII)
+    if found is None:
+        raise click.BadParameter(f"must be off or such as 20mag or 1.5mcd,90deg, got {text!r}")
+    value = float(found[1])
+    azimuth = bearing(where) if comma else None
+    if found[2] == "mcd":
+        return 1e-3 * value, azimuth
+    if not _BRIGHTEST_ZENITH <= value < _NATURAL_ZENITH:
+        raise click.BadParameter(
+            f"must be from {_BRIGHTEST_ZENITH:g}mag to below {_NATURAL_ZENITH:g}mag, that of a "
+            f"natural sky, got {text}"
+        )
+    luminances = (10.0 ** (0.4 * (_CANDELA_MAGNITUDE - each)) for each in (value, _NATURAL_ZENITH))
+    total, natural = luminances
+    return total - natural, azimuth
+
+
 def solar_longitude(text: str) -> float:
     """Read an angle from 0deg to 360deg. [rad]"""
     angle = parsed(text, parse_angle)
@@ -85,23 +119,56 @@ def sun_distance(text: str) -> float | str:
     return distance
 
 
-def moon(text: str) -> Moon:
+MOONS = ("include", "exclude", "only")
+"""As of `skybake.image.moonlight`."""
+
+
+def moon(text: str) -> Moon | str:
+    """Read one of `MOONS`, or a moon in front of the sun as of `eclipsing_moon`."""
+    if text in MOONS:
+        return text
+    return _eclipsing_moon(text, "include, exclude, only or ")
+
+
+def eclipsing_moon(text: str) -> Moon:
     """Read ``195deg,40deg``, with a diameter as ``0.52deg`` and a distance as ``384400km``."""
+    return _eclipsing_moon(text, "")
+
+
+def moon_phase(text: str) -> float:
+    """Read a phase angle, or a name of `skybake.ephemeris.lit_moon.PHASES`. [rad]"""
+    from skybake.ephemeris.lit_moon import PHASES
+
+    if text in PHASES:
+        return math.radians(PHASES[text])
+    try:
+        angle = parse_angle(text)
+    except InputError:
+        angle = math.nan
+    if not 0.0 <= angle <= math.pi + 1e-9:
+        raise click.BadParameter(
+            f"must be from 0deg to 180deg or one of {', '.join(PHASES)}, got {text!r}"
+        )
+    return angle
+
+
+def _eclipsing_moon(text: str, others: str) -> Moon:
     from skybake.ephemeris.moon import Moon
 
     parts = text.split(",")
     if not 2 <= len(parts) <= 4:
         raise click.BadParameter(
-            f"must be AZIMUTH,ELEVATION[,DIAMETER[,DISTANCE]] such as 180deg,40deg, got {text!r}"
+            f"must be {others}AZIMUTH,ELEVATION[,DIAMETER[,DISTANCE]] such as 180deg,40deg, "
+            f"got {text!r}"
         )
-    others = {}
+    sizes: dict[str, float] = {}
     if len(parts) > 2:
-        others["diameter"] = parsed(parts[2], parse_angle)
+        sizes["diameter"] = parsed(parts[2], parse_angle)
     if len(parts) > 3:
         is_far = parts[3].strip() == "inf"
-        others["distance"] = math.inf if is_far else length(parts[3])
+        sizes["distance"] = math.inf if is_far else length(parts[3])
     try:
-        return Moon(bearing(parts[0]), elevation(parts[1]), **others)
+        return Moon(bearing(parts[0]), elevation(parts[1]), **sizes)
     except InputError as error:
         raise click.BadParameter(str(error)) from error
 

@@ -5,11 +5,19 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from skybake.commands.options import choices, values
+from skybake.commands.options.camera import (
+    altitude_with,
+    camera_from_file,
+    camera_option,
+    camera_units_option,
+    camera_up_option,
+)
 from skybake.commands.options.rules import options_together
 from skybake.commands.options.written import ev_option
 from skybake.errors import InputError
@@ -18,6 +26,10 @@ if TYPE_CHECKING:
     from skybake.ephemeris.moment import Moment
     from skybake.image.settings import MapSettings
     from skybake.luts.settings import TableSettings
+    from skybake.projection.camera import Camera
+
+ASPECT = 16.0 / 9.0
+"""Width over height of the camera's picture, unless it is told."""
 
 _SIZES = ("transmittance_size", "multiple_scattering_size", "sky_view_size", "aerial_size")
 
@@ -63,14 +75,14 @@ table_options = options_together(
         metavar="ANGLE",
         type=values.field_of_view,
         show_default="60deg",
-        help="Angle that the width of the volume's camera covers.",
+        help="Angle that the width of the volume's camera covers; in place of what --camera tells.",
     ),
     click.option(
         "--aspect",
         metavar="W:H",
         type=_aspect,
         show_default="16:9",
-        help="Width over height of its picture.",
+        help="Width over height of its picture, where --camera does not tell it.",
     ),
     click.option(
         "--look",
@@ -79,6 +91,9 @@ table_options = options_together(
         show_default="180,0",
         help="Where it looks.",
     ),
+    camera_option,
+    camera_units_option,
+    camera_up_option,
     click.option(
         "--far",
         metavar="LENGTH",
@@ -112,33 +127,72 @@ table_options = options_together(
         type=click.Choice(choices.TABLE_METHODS),
         default="full",
         show_default=True,
-        help="All orders of scattering, or Hillaire's closure, in all tables.",
+        help="All orders of scattering with polarised light, or as if light were not polarised, or "
+        "Hillaire's closure, in all tables.",
     ),
 )
 
 
-def table_settings(options: Mapping[str, Any]) -> TableSettings:
+def table_camera(options: Mapping[str, Any]) -> Camera | None:
+    """Return the camera of a file, if one is given.
+
+    Raises
+    ------
+    click.UsageError, InputError
+        As of `camera_from_file`.
+    """
+    if options["camera"] is None:
+        return None
+    path: Path = options["camera"]
+    given = options["camera_units"], options["camera_up"], options["fov"]
+    return camera_from_file(path, *given, options["aspect"] or _proportions(path))
+
+
+def _proportions(path: Path) -> float:
+    """Return the width over the height of the picture that a camera's file holds."""
+    if path.suffix.lower() != ".exr":
+        return ASPECT
+    from skybake.formats.reader import open_image
+
+    picture = open_image(path)
+    spec = picture.spec()
+    picture.close()
+    return float(spec.full_width / max(spec.full_height, 1))
+
+
+def table_settings(options: Mapping[str, Any], camera: Camera | None) -> TableSettings:
     """Return what the tables are like.
 
     Raises
     ------
     click.UsageError
         If a value is out of range.
+    InputError
+        If one of the camera's is.
     """
     from skybake.luts.settings import TableSettings
 
-    names = (*_SIZES, "parametrisation", "fov", "aspect", "far", "pixel")
+    own = ("fov", "aspect") if camera is None else ()
+    names = (*_SIZES, "parametrisation", *own, "far", "pixel")
     given = {name: options[name] for name in names if options[name] is not None}
     if options["look"] is not None:
         given["azimuth"], given["elevation"] = options["look"]
     try:
-        return TableSettings(**given)
+        settings = TableSettings(**given)
     except InputError as error:
         where, colon, problem = str(error).partition(":")
         raise click.UsageError(f"--{where.replace(' ', '-')}{colon}{problem}") from error
+    if camera is None:
+        return settings
+    try:
+        return settings.seen_by(camera)
+    except InputError as error:
+        raise InputError(f"{options['camera']}: {error}") from error
 
 
-def scene_settings(options: Mapping[str, Any], moment: Moment | None) -> MapSettings:
+def scene_settings(
+    options: Mapping[str, Any], moment: Moment | None, camera: Camera | None
+) -> MapSettings:
     """Return where observer and sun are, and what the numbers mean.
 
     Raises
@@ -149,11 +203,12 @@ def scene_settings(options: Mapping[str, Any], moment: Moment | None) -> MapSett
     from skybake.image import settings
 
     given = {name: options[name] for name in ("units", "ev") if options[name] is not None}
+    altitude = options["altitude"] if camera is None else altitude_with(camera, options["altitude"])
     try:
         return settings.map_settings(
             sun_elevation=options["sun_elevation"] if moment is None else moment.sun_elevation,
             sun_azimuth=options["sun_azimuth"] if moment is None else moment.sun_azimuth,
-            altitude=options["altitude"],
+            altitude=altitude,
             colorspace=options["colorspace"],
             method=options["method"],
             **given,

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from skybake.commands.printing.night import night_lines, night_result
 from skybake.units import degrees
 
 if TYPE_CHECKING:
     from skybake.baking import Baked
     from skybake.ephemeris.moment import Moment
     from skybake.image.settings import MapSettings
+    from skybake.sidecar.map_light import MapLight
 
 
 def print_summary(baked: Baked, settings: MapSettings, seconds: float) -> None:
@@ -27,7 +29,7 @@ def print_summary(baked: Baked, settings: MapSettings, seconds: float) -> None:
     click.echo(
         f"sun {baked.direct_illuminance:.5g} lx ({baked.direct_normal_illuminance:.5g} lx facing "
         f"it), sky {baked.sky_illuminance:.5g} lx on the horizontal; "
-        f"1.0 = {baked.white_luminance:.6g} cd/m2; {baked.pixel}; {seconds:.2f} s"
+        f"1.0 = {baked.white_luminance:.6g} cd/m2{_scale(settings)}; {baked.pixel}; {seconds:.2f} s"
     )
     eclipse = _eclipse(baked)
     if eclipse is not None:
@@ -38,12 +40,20 @@ def print_summary(baked: Baked, settings: MapSettings, seconds: float) -> None:
     if baked.from_below is not None:
         by_map, by_ground = baked.from_below
         click.echo(f"from below {by_map:.5g} lx, instead of {by_ground:.5g} lx by the ground")
-    if baked.star_illuminance is not None:
-        click.echo(f"stars {baked.star_illuminance:.3g} lx on the horizontal")
+    if baked.moonlight:
+        click.echo(_moon_line(baked))
+    for line in night_lines(baked.night):
+        click.echo(line)
     if baked.clamped:
         click.echo(f"{baked.clamped} negative values, out of gamut, were stored as 0")
     for line in target_lines(settings):
         click.echo(line)
+
+
+def _scale(settings: MapSettings) -> str:
+    from skybake.image.night_scale import NIGHT_EV, has_night_scale
+
+    return f" (EV {NIGHT_EV:g}, of a night)" if has_night_scale(settings) else ""
 
 
 def target_lines(settings: MapSettings) -> list[str]:
@@ -98,7 +108,8 @@ def result(
         "direct_normal_illuminance_lux": baked.direct_normal_illuminance,
         "sky_illuminance_lux": baked.sky_illuminance,
         "eclipse": _eclipse(baked),
-        "star_illuminance_lux": baked.star_illuminance,
+        "moon": _moon(light),
+        **night_result(baked.night),
         "white_luminance_cd_m2": baked.white_luminance,
         "exposure_ev": light.exposure_ev,
         "projection": light.projection,
@@ -114,6 +125,25 @@ def result(
         "preview_white": None if baked.preview_white is None else list(baked.preview_white),
         "seconds": round(seconds, 3),
     }
+
+
+def _moon(light: MapLight) -> dict[str, Any] | None:
+    if light.moon is None:
+        return None
+    from skybake.sidecar.light_json import moon_document
+
+    return moon_document(light.moon)
+
+
+def _moon_line(baked: Baked) -> str:
+    told = baked.moonlight
+    eclipsed = told.get("skybake:moonEclipsed")
+    dimmed = "" if eclipsed is None else f", {eclipsed:.3%} of it in the shadow of Earth"
+    return (
+        f"moon {told['skybake:moonIlluminance']:.3g} lx on the horizontal "
+        f"({told['skybake:moonNormalIlluminance']:.3g} lx facing it), "
+        f"{told['skybake:moonIlluminatedFraction']:.0%} lit{dimmed}"
+    )
 
 
 def _eclipse(baked: Baked) -> dict[str, Any] | None:

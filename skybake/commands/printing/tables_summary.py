@@ -12,6 +12,9 @@ if TYPE_CHECKING:
     from skybake.luts.bake import BakedTables
     from skybake.luts.settings import TableSettings
 
+COARSE = 0.05
+"""Relative error near the sun from which the summary tells of it."""
+
 
 def print_summary(
     baked: BakedTables, view: MapSettings, settings: TableSettings, seconds: float
@@ -23,6 +26,13 @@ def print_summary(
         f"{settings.parametrisation}; {view.encoding.space.name}; "
         f"a radiance of 1 is {view.encoding.white_luminance:.6g} cd/m2; {seconds:.2f} s"
     )
+    near = baked.error_near_sun
+    if near is not None and near["largest_relative"] > COARSE:
+        width, height = settings.sky_view_size
+        click.echo(
+            f"sky_view errs by up to {near['largest_relative']:.0%} within {near['within_deg']:g} "
+            f"degrees of the sun; --sky-view-size {2 * width}x{2 * height} by much less"
+        )
 
 
 def print_json(
@@ -37,6 +47,7 @@ def print_json(
         "colorspace": view.encoding.space.name,
         "white_luminance_cd_m2": view.encoding.white_luminance,
         "recipe_hash": baked.recipe_hash,
+        "error_near_sun": baked.error_near_sun,
         "seconds": round(seconds, 3),
     }
     click.echo(json.dumps(summary))
