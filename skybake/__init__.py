@@ -16,10 +16,12 @@ if TYPE_CHECKING:
     from skybake.baking.convert import Converted, convert
     from skybake.baking.orientation_chart import bake_orientation_chart
     from skybake.colour.space import ColourSpace
+    from skybake.commands.in_notebook import StudioFrame, studio
     from skybake.environment.environment import Environment
     from skybake.environment.load import load_environment
     from skybake.environment.resample import resample
     from skybake.ephemeris.celestial import CelestialFrame
+    from skybake.ephemeris.lit_moon import LitMoon, moon_by_hand
     from skybake.ephemeris.moment import Moment, TimeSpan, sun_at
     from skybake.ephemeris.moon import Moon
     from skybake.ephemeris.place import SITES, Place, find_place
@@ -34,6 +36,8 @@ if TYPE_CHECKING:
     )
     from skybake.image.image import Image
     from skybake.image.light import Light
+    from skybake.image.moon_figures import MoonFigures
+    from skybake.image.moonlight import Moonlight
     from skybake.image.night import Night
     from skybake.image.picture_settings import PictureSettings
     from skybake.image.scene import Scene
@@ -125,10 +129,13 @@ __all__ = [
     "InputError",
     "Light",
     "Lighting",
+    "LitMoon",
     "MapLight",
     "MapSettings",
     "Moment",
     "Moon",
+    "MoonFigures",
+    "Moonlight",
     "Night",
     "Octahedral",
     "OutputError",
@@ -154,6 +161,7 @@ __all__ = [
     "SkybakeError",
     "Spectrum",
     "Star",
+    "StudioFrame",
     "TableSettings",
     "TabulatedPhase",
     "TabulatedProfile",
@@ -177,9 +185,11 @@ __all__ = [
     "load_environment",
     "load_preset",
     "map_settings",
+    "moon_by_hand",
     "plan_sequence",
     "preset_names",
     "resample",
+    "studio",
     "sun_at",
 ]
 
@@ -217,10 +227,13 @@ _HOMES = {
     "InputError": "skybake.errors",
     "Light": "skybake.image.light",
     "Lighting": "skybake.image.settings",
+    "LitMoon": "skybake.ephemeris.lit_moon",
     "MapLight": "skybake.sidecar.map_light",
     "MapSettings": "skybake.image.settings",
     "Moment": "skybake.ephemeris.moment",
     "Moon": "skybake.ephemeris.moon",
+    "MoonFigures": "skybake.image.moon_figures",
+    "Moonlight": "skybake.image.moonlight",
     "Night": "skybake.image.night",
     "Octahedral": "skybake.projection",
     "OutputError": "skybake.errors",
@@ -247,6 +260,7 @@ _HOMES = {
     "SkybakeError": "skybake.errors",
     "Spectrum": "skybake.preset",
     "Star": "skybake.preset",
+    "StudioFrame": "skybake.commands.in_notebook",
     "TableSettings": "skybake.luts.settings",
     "TabulatedPhase": "skybake.preset",
     "TabulatedProfile": "skybake.preset",
@@ -270,9 +284,11 @@ _HOMES = {
     "load_environment": "skybake.environment.load",
     "load_preset": "skybake.preset",
     "map_settings": "skybake.image.settings",
+    "moon_by_hand": "skybake.ephemeris.lit_moon",
     "plan_sequence": "skybake.sequence.planning",
     "preset_names": "skybake.preset",
     "resample": "skybake.environment.resample",
+    "studio": "skybake.studio",
     "sun_at": "skybake.ephemeris.moment",
 }
 

@@ -32,7 +32,7 @@ _ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasat
 
 _COMMANDS = (
     *("aerial", "cache", "chart", "check", "clouds", "convert", "ibl", "luts", "presets"),
-    *("preview", "probe", "render", "sequence", "shot", "targets"),
+    *("preview", "probe", "render", "sequence", "shot", "studio", "targets"),
 )
 
 # Message of the RuntimeError where a thread gets no stack or is not allowed.

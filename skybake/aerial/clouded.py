@@ -35,7 +35,8 @@ def with_clouds(scene: Scene, cloudscape: Cloudscape, lens: Lens, depths: Depths
         Clear air up to there; at infinity and at 0 it stays as it is.
     """
     before, azimuth = CloudsBefore(cloudscape), scene.settings.lighting.sun_azimuth
-    to_rgb = rgb_from_xyz(scene.settings.encoding.space).T
+    encoding = scene.settings.encoding
+    to_rgb = rgb_from_xyz(encoding.space).T / encoding.white_luminance
     to_xyz = np.linalg.inv(to_rgb)
     light, passing = air.light.copy(), air.passing.copy()
     for first in range(0, len(light), BAND):

@@ -50,6 +50,7 @@ def default_path(planet: Planet, settings: MapSettings) -> Path:
         _DISCS[lighting.sun_disc],
         "moon" if lighting.moon is not None else "",
         *_night(settings.night),
+        *_moonlight(settings),
         "" if lighting.sun_size is None else f"size{math.degrees(lighting.sun_size):g}deg",
         "soft" if lighting.sun_soft else "",
         f"strength{lighting.sun_strength:g}" if lighting.sun_strength != 1.0 else "",
@@ -62,6 +63,21 @@ def default_path(planet: Planet, settings: MapSettings) -> Path:
         view.projection.label,
     )
     return Path("_".join(filter(None, parts)) + usual_suffix(settings))
+
+
+def _moonlight(settings: MapSettings) -> tuple[str, ...]:
+    """Name what a map has of the Moon as a light, unless it is as usual."""
+    moonlight = settings.moonlight
+    if moonlight.moon is None or not settings.night.is_shown:
+        return ()
+    if moonlight.shown == "exclude":
+        return ("nomoon",)
+    moon, name = moonlight.moon, "moonlight" if moonlight.is_alone else ""
+    if moon.earth is not None:
+        return (name,)
+    elevation, azimuth = math.degrees(moon.elevation), math.degrees(moon.azimuth)
+    phase = math.degrees(moon.phase_angle)
+    return (name, f"moon{elevation:.4g}deg{azimuth:.4g}deg{phase:.4g}deg")
 
 
 def _night(night: Night) -> tuple[str, ...]:

@@ -20,6 +20,7 @@ from skybake.image.light import (
     attributes_from_light,
     eclipse_attributes,
     light_of_scene,
+    moon_attributes,
     star_attributes,
 )
 from skybake.image.parts import part_names
@@ -68,6 +69,8 @@ class Baked(Light):
         The files that tell it.
     eclipse : mapping of str to Attribute
         What files state of an eclipse; empty without one.
+    moonlight : mapping of str to Attribute
+        What files state of the Moon as a light; empty without it.
     star_illuminance : float or None
         Of the horizontal by stars; None of a map without them. [lx]
     """
@@ -84,6 +87,7 @@ class Baked(Light):
     map_light: MapLight | None = None
     light_files: tuple[Path, ...] = ()
     eclipse: Mapping[str, Attribute] = field(default_factory=dict)
+    moonlight: Mapping[str, Attribute] = field(default_factory=dict)
     star_illuminance: float | None = None
 
 
@@ -190,11 +194,13 @@ def bake_scene(
     light = light_of_scene(scene)
     eclipse = eclipse_attributes(scene)
     from_below, starlight = _from_below(scene), star_attributes(scene)
+    moonlight = moon_attributes(scene)
     described = None if light_files is None else map_light(scene, light)
     attributes = {
         **attributes_from_light(light),
         **({} if from_below is None else dict(zip(FROM_BELOW, from_below, strict=True))),
         **starlight,
+        **moonlight,
         **eclipse,
         **recipe_attributes(planet, settings),
         **(attributes or {}),
@@ -263,6 +269,7 @@ def bake_scene(
         map_light=described,
         light_files=tuple(light_files or ()),
         eclipse=eclipse,
+        moonlight=moonlight,
         star_illuminance=starlight.get(STAR_ILLUMINANCE),
     )
 

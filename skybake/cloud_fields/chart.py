@@ -104,21 +104,32 @@ def cloud_place(field, radius, x, y, z, altitude, blur):
         Distance on the plane within which no other patch has clouds. [km]
     """
     x, y = plane_place(field, radius, x, y, z)
-    east, north, room = lone_patch(field, x, y)
+    around = shares_around(field, x, y)
+    east, north, room = lone_patch(field, around)
     if room > 0.0:
         return x + east, y + north, 0.0, room
-    return shared_place(field, x, y, altitude, blur, surface_detail(field, blur))
+    detail = surface_detail(field, blur)
+    east, north, erosion, room, _ = shared_place(field, around, x, y, altitude, blur, detail)
+    return x + east, y + north, erosion, room
 
 
 @kernel
-def lone_patch(field, x, y):
-    """Shift of the tile at a place of the plane, and the distance within which it is the same.
+def shares_around(field, x, y):
+    """Return what `patches_around` does; a tile that repeats to all sides has a single patch."""
+    if field.patch == 0.0:
+        return 0, 0, 1.0, 0, 0, 0.0, 0, 0, 0.0
+    return patches_around(field, x, y)
 
-    The distance is 0 where several patches may have clouds. [km]
+
+@kernel
+def lone_patch(field, around):
+    """Shift of the tile in the midst of some patches, and the distance within which it is the same.
+
+    The distance is 0 where several of them may have clouds; they are those of `shares_around`. [km]
     """
     if field.patch == 0.0:
         return 0.0, 0.0, math.inf
-    ai, aj, a, bi, bj, b, ci, cj, c = patches_around(field, x, y)
+    ai, aj, a, bi, bj, b, ci, cj, c = around
     if b > a:
         ai, aj, a, bi, bj, b = bi, bj, b, ai, aj, a
     if c > a:
@@ -131,13 +142,23 @@ def lone_patch(field, x, y):
 
 
 @kernel
-def shared_place(field, x, y, altitude, blur, detail):
-    """Do what `cloud_place` does, at a place of the plane where several patches may have clouds."""
-    ai, aj, a, bi, bj, b, ci, cj, c = patches_around(field, x, y)
+def shared_place(field, around, x, y, altitude, blur, detail):
+    """Find the nearest cloud at a place of the plane where several patches may have some.
+
+    Returns
+    -------
+    east, north : float
+        Shift of the tile in the patch of that cloud. [km]
+    erosion, room : float
+        As of `cloud_place`. [km]
+    number : int
+        Of the patch, among those around.
+    """
+    ai, aj, a, bi, bj, b, ci, cj, c = around
     most = max(a, b, c)
     # Beyond the three there are others, whose shares are 0 here.
     room = room_within(field, 0.0, most)
-    nearest, erosion = math.inf, 0.0
+    nearest, erosion, number = math.inf, 0.0, 0
     east = north = clear = 0.0
     for n in range(3):
         if n == 0:
@@ -154,14 +175,39 @@ def shared_place(field, x, y, altitude, blur, detail):
         if free > 0.0:
             if nearest == math.inf and share == most:
                 east, north, erosion = dx, dy, erosion_of(field, share, other)
+                number = n
             room = min(room, free)
             continue
         eroded = erosion_of(field, share, other)
         distance = surface_distance(field, x + dx, y + dy, altitude, detail) + eroded
         if distance < nearest:
             room = min(room, clear) if nearest < math.inf else room
-            nearest, erosion, clear = distance, eroded, free
+            nearest, erosion, clear, number = distance, eroded, free, n
             east, north = dx, dy
         else:
             room = min(room, free)
-    return x + east, y + north, erosion, room
+    return east, north, erosion, room, number
+
+
+@kernel
+def patch_of(around, number):
+    """Row and column of one of the patches around a place."""
+    ai, aj, _, bi, bj, _, ci, cj, _ = around
+    if number == 0:
+        return aj, ai
+    if number == 1:
+        return bj, bi
+    return cj, ci
+
+
+@kernel
+def erosion_in(field, around, row, column):
+    """How far surfaces of a patch are moved inward where these patches are around. [km]"""
+    ai, aj, a, bi, bj, b, ci, cj, c = around
+    if ai == column and aj == row:
+        return erosion_of(field, a, max(b, c))
+    if bi == column and bj == row:
+        return erosion_of(field, b, max(a, c))
+    if ci == column and cj == row:
+        return erosion_of(field, c, max(a, b))
+    return erosion_of(field, 0.0, max(a, b, c))

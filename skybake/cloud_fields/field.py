@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.cloud_fields.clearance import surface_clearance, voxel_clearance
-from skybake.cloud_fields.surface import surface_detail, surface_extinction
+from skybake.cloud_fields.surface import surface_around, surface_detail, surface_extinction
 from skybake.cloud_fields.voxels import linear_extinction, voxel_extinction
 from skybake.jit.kernel import kernel
 
@@ -150,6 +150,14 @@ def detailed_extinction(field, x, y, altitude, detail, erosion=0.0):
     if field.kind == CONSTANT:
         return voxel_extinction(field, x, y, altitude)
     return linear_extinction(field, x, y, altitude)
+
+
+@kernel
+def detailed_around(field, x, y, altitude, detail, erosion):
+    """Return the extinction at a point and how far clouds are from it, see `surface_around`."""
+    if field.kind == SURFACE:
+        return surface_around(field, x, y, altitude, detail, erosion)
+    return detailed_extinction(field, x, y, altitude, detail, erosion), 0.0
 
 
 @kernel

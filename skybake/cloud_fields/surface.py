@@ -26,6 +26,10 @@ _PERIODS = 4096.0
 
 _PER_STEP = 1.0 / 127.0
 
+_STEEPNESS = 0.5
+"""Share of the distance from a displaced surface that is free of clouds for the most part: noises
+are as steep as that."""
+
 _SWIRL = 0.6
 """By how much of the displacement by coarser noises the finer ones are moved along."""
 
@@ -62,21 +66,31 @@ def surface_detail(field, blur):
 @kernel
 def surface_extinction(field, x, y, altitude, detail, erosion=0.0):
     """Extinction at a point with the detail of a blur; others are as of `extinction_at`. [km⁻¹]"""
+    return surface_around(field, x, y, altitude, detail, erosion)[0]
+
+
+@kernel
+def surface_around(field, x, y, altitude, detail, erosion):
+    """Return the extinction at a point, and how far from it clouds are where there is none.
+
+    Parameters are those of `surface_extinction`. Distances are estimates: noises may bring clouds
+    nearer, but seldom do. [km⁻¹], [km]
+    """
     shift, _, _, _, _, along_x, along_y, along_z = detail
     fz = (altitude - field.base) * along_z
     levels, rows, columns = field.distance.shape
     if fz < 0.0 or fz >= levels - 1:
-        return 0.0
+        return 0.0, 0.0
     x -= math.floor(x * along_x) * field.period[0]
     y -= math.floor(y * along_y) * field.period[1]
     distance = node_distance(field, x * along_x * columns, y * along_y * rows, fz)
     distance += erosion - shift
     density = _density(field, distance, x, y, altitude, detail)
     if density <= 0.0:
-        return 0.0
+        return 0.0, -density
     k = int(fz)
     low, high = field.extinction[k], field.extinction[k + 1]
-    return density * (low + (fz - k) * (high - low))
+    return density * (low + (fz - k) * (high - low)), 0.0
 
 
 @kernel
@@ -95,7 +109,7 @@ def surface_distance(field, x, y, altitude, detail):
 
 @kernel
 def _density(field, distance, x, y, altitude, detail):
-    """Share of the full extinction at a point, in [0, 1].
+    """Share of the full extinction at a point, at most 1; outside of clouds minus the distance.
 
     `distance` is that from the surface that is not displaced, and x and y are within the tile.
     """
@@ -103,10 +117,10 @@ def _density(field, distance, x, y, altitude, detail):
     beyond = 0.5 * width
     left = coarse + middle + fine
     if distance - left >= beyond:
-        return 0.0
+        return beyond + left - distance
     below = field.condensation - altitude
     if below >= beyond + AT_BASE * left:
-        return 0.0
+        return beyond + AT_BASE * left - below
     moved = 0.0
     for q in range(_NOISES):
         amplitude = coarse if q == 0 else middle if q == 1 else fine
@@ -121,8 +135,10 @@ def _density(field, distance, x, y, altitude, detail):
         moved += amplitude * _noise(field, q, x + swirl, y - swirl, altitude + 0.5 * swirl)
         left -= amplitude
         if distance - moved - left >= beyond:
-            return 0.0
+            return _STEEPNESS * (beyond + left + moved - distance)
     distance = max(distance - moved, below - AT_BASE * moved)
+    if distance >= beyond:
+        return _STEEPNESS * (beyond - distance)
     return min(0.5 - distance / width, 1.0)
 
 

@@ -38,6 +38,8 @@ class Quality(NamedTuple):
         and of a file's voxels.
     depth : float
         Optical depth of a step of the eye's rays, without forward peaks.
+    alike : float
+        Relative difference of two pixels up to which that between them is their mean.
     """
 
     columns: int
@@ -45,12 +47,13 @@ class Quality(NamedTuple):
     work: float
     work_of_file: float
     depth: float
+    alike: float
 
 
 QUALITIES = {
-    "draft": Quality(96, 640_000, 6e8, 2.3e9, 0.6),
-    "normal": Quality(144, 640_000, 9e8, 2.3e9, 0.4),
-    "high": Quality(192, 1_300_000, 8e9, 8e9, 0.2),
+    "draft": Quality(96, 640_000, 6e8, 2.3e9, 0.6, 0.05),
+    "normal": Quality(144, 640_000, 9e8, 2.3e9, 0.4, 0.03),
+    "high": Quality(192, 1_300_000, 8e9, 8e9, 0.2, 0.01),
 }
 
 _WORK = {2: 624, 3: 1280, 4: 3480, 5: 5760, 7: 17408}
@@ -75,6 +78,7 @@ def build_cloudscape(
     time: float = 0.0,
     quality: str = "normal",
     workers: Workers,
+    keeps_light: bool = False,
 ) -> Cloudscape | None:
     """Build what an observer sees of a world's clouds.
 
@@ -92,6 +96,8 @@ def build_cloudscape(
         How finely their light is resolved.
     workers : Workers
         Threads that do the work.
+    keeps_light : bool, optional
+        Whether light that is solved for is kept on disk, for other processes.
 
     Returns
     -------
@@ -111,7 +117,8 @@ def build_cloudscape(
     layers = [_layer(layer, field, sky, weights, chosen, workers) for layer, field in fields]
     air = ClearAir(sky.atmosphere, sky.source.angular_radius, workers, sky.table_method)
     sun = sun_vector(sky.sun_azimuth, sky.sun_elevation)
-    return Cloudscape(layers, air, sky.altitude, sun, weights, chosen.depth, workers)
+    given = layers, air, sky.altitude, sun, weights, chosen.depth, chosen.alike, workers
+    return Cloudscape(*given, keeps_light=keeps_light)
 
 
 def _layer(

@@ -22,6 +22,7 @@ from skybake.clouds.compose import compose
 from skybake.clouds.dimming import Dimming, dimming_by
 from skybake.clouds.directions import fill_places, node_directions, unit_vectors
 from skybake.clouds.footprint import rays_per_side, see_pixels
+from skybake.clouds.kept_light import kept_light, light_key
 from skybake.clouds.layer import (
     SolvedLayer,
     Surroundings,
@@ -75,8 +76,12 @@ class Cloudscape:
         See `solve_layer`.
     depth : float
         Optical depth of a step of the eye's rays.
+    alike : float
+        As the tolerance of `skybake.clouds.rows.see_rows`.
     workers : Workers
         Threads that do the work.
+    keeps_light : bool, optional
+        Whether light is kept on disk.
     """
 
     def __init__(
@@ -87,7 +92,10 @@ class Cloudscape:
         sun: Array,
         weights: Array,
         depth: float,
+        alike: float,
         workers: Workers,
+        *,
+        keeps_light: bool = False,
     ) -> None:
         self.layers = sorted(layers, key=lambda each: -each.grid.top)
         self.air = air
@@ -96,11 +104,20 @@ class Cloudscape:
         self.sun = sun
         self.weights = weights
         self.depth = depth
+        self.alike = alike
         self.workers = workers
+        self._keeps_light = keeps_light
 
     @cached_property
     def solved(self) -> list[SolvedLayer]:
-        """The light of each layer, from the highest down.
+        """The light of each layer, from the highest down."""
+        if not self._keeps_light:
+            return self._solve()
+        key = light_key(self.layers, self.air, self.altitude, self.sun, self.weights)
+        return kept_light(key, self._solve)
+
+    def _solve(self) -> list[SolvedLayer]:
+        """Solve for the light of each layer.
 
         A layer is lit by what those above leave on average, and stands over what those below
         reflect.
@@ -184,6 +201,13 @@ class Cloudscape:
     ) -> tuple[Floats, Floats]:
         """Follow rays through every layer, up to `ends` if there are any, see `fill_march`.
 
+        Parameters
+        ----------
+        directions : ndarray of float64, shape (ray, 3)
+            Unit vectors.
+        pixel : float
+            Angle below which nothing needs to be resolved. [rad]
+
         Returns
         -------
         seen : ndarray of float32, shape (layer, ray, channel)
@@ -261,7 +285,7 @@ class Cloudscape:
         return self.air.atmosphere.medium.r_top
 
     def put_into(
-        self, total: Floats, zenith: Array, bearing: Array, pixel: float
+        self, total: Floats, zenith: Array, bearing: Array, seen: Floats, passing: Floats
     ) -> tuple[Floats, Floats]:
         """Put clouds into the light of a clear sky.
 
@@ -271,8 +295,8 @@ class Cloudscape:
             Radiance without clouds.
         zenith, bearing : ndarray of float64, shape (ray,)
             Directions. [rad]
-        pixel : float
-            Angle below which nothing needs to be resolved. [rad]
+        seen, passing : ndarray of float32
+            What is seen of clouds there, see `see`.
 
         Returns
         -------
@@ -281,8 +305,6 @@ class Cloudscape:
             Share of what is behind that clouds hide.
         """
         lit, through, distance = self.nodes
-        directions = unit_vectors(zenith, bearing)
-        seen, passing = self.see(directions, pixel)
         row, weight = np.empty((zenith.size, 4), np.int64), np.empty((zenith.size, 4))
         out = np.empty_like(total)
         opacity = np.empty(zenith.size, np.float32)

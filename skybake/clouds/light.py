@@ -94,10 +94,15 @@ def fill_corners(light, x, y, altitude, corner, weight):
     k = min(int(fz), max(levels - 2, 0))
     j, i = math.floor(fy), math.floor(fx)
     w, v, u = fz - k, fy - j, fx - i
+    # A division takes as long as all the rest.
+    south, west = int(j) % rows, int(i) % columns
+    north = south + 1 if south + 1 < rows else 0
+    east = west + 1 if west + 1 < columns else 0
+    up = min(k + 1, levels - 1)
     for n in range(8):
-        corner[n, 0] = min(k + (n >> 2), levels - 1)
-        corner[n, 1] = (j + ((n >> 1) & 1)) % rows
-        corner[n, 2] = (i + (n & 1)) % columns
+        corner[n, 0] = up if n >> 2 else k
+        corner[n, 1] = north if (n >> 1) & 1 else south
+        corner[n, 2] = east if n & 1 else west
         weight[n] = (w if n >> 2 else 1.0 - w) * (v if (n >> 1) & 1 else 1.0 - v)
         weight[n] *= u if n & 1 else 1.0 - u
 

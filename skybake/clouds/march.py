@@ -8,8 +8,16 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from skybake.cloud_fields.chart import chart_stretch, lone_patch, plane_place, shared_place
-from skybake.cloud_fields.field import detail_at, detailed_clearance, detailed_extinction
+from skybake.cloud_fields.chart import (
+    chart_stretch,
+    erosion_in,
+    lone_patch,
+    patch_of,
+    plane_place,
+    shared_place,
+    shares_around,
+)
+from skybake.cloud_fields.field import detail_at, detailed_around, detailed_clearance
 from skybake.clouds.particles import TERMS
 from skybake.clouds.source import fill_source, prepare_ray
 from skybake.jit.kernel import kernel
@@ -147,8 +155,9 @@ def fill_march(
         # Farther from the observer the plane is stretched more.
         far = end * dx, end * dy, altitude + end * dz
         stretch = chart_stretch(field, radius, far[0], far[1], far[2])
-        # Up to where the tile lies as it does here.
+        # Up to where one patch alone has clouds.
         alone = east = north = 0.0
+        is_lone, row, column = True, 0, 0
         passes, depth = 1.0, 0.0
         weighted = total = due = 0.0
         share, is_new = 1.0, True
@@ -169,24 +178,32 @@ def fill_march(
             if blur > SIMILAR * known:
                 known, detail = blur, detail_at(field, blur)
             if middle >= alone:
-                east, north, room = lone_patch(field, x, y)
+                around = shares_around(field, x, y)
+                east, north, room = lone_patch(field, around)
+                is_lone = room > 0.0
+                if not is_lone:
+                    east, north, _, room, number = shared_place(
+                        field, around, x, y, h, blur, detail
+                    )
+                    row, column = patch_of(around, number)
                 alone = middle + room / stretch
-            if middle < alone:
-                x, y, erosion, room = x + east, y + north, 0.0, alone - middle
-            else:
-                x, y, erosion, room = shared_place(field, x, y, h, blur, detail)
-                room /= stretch
+            room = max(alone - middle, 0.0)
             shortest = marching.shortest + min(blur, coarsest)
-            clear = min(detailed_clearance(field, x, y, h, blur, detail) / stretch, room)
+            clear = detailed_clearance(field, x + east, y + north, h, blur, detail) / stretch
+            clear = min(clear, room)
             if clear > 0.5 * shortest:
                 _add(scratch.source, due, seen[n])
                 due, is_new = 0.0, True
                 at = max(middle + clear, at + shortest)
                 step = shortest
                 continue
-            extinction = detailed_extinction(field, x, y, h, detail, erosion)
+            erosion = 0.0
+            if not is_lone:
+                erosion = erosion_in(field, shares_around(field, x, y), row, column)
+            x, y = x + east, y + north
+            extinction, free = detailed_around(field, x, y, h, detail, erosion)
             if extinction < THINNEST:
-                at += step
+                at = max(middle + min(free / stretch, room), at + step)
                 step = shortest
                 continue
             scaled = extinction * keep

@@ -22,7 +22,7 @@ _MEGABYTE = 1e6
 
 @click.group()
 def cache() -> None:
-    """Show, clear or fill the folder of kernels, solved atmospheres and tiles of clouds."""
+    """Show, clear or fill the folder of kernels, solved atmospheres, tiles and light of clouds."""
 
 
 @cache.command()
@@ -31,8 +31,8 @@ def info(as_json: bool) -> None:
     """Print where the cache is and what each version keeps in it.
 
     SKYBAKE_CACHE_DIR names another place than the user's cache folder. Folders that have not been
-    used for 30 days are removed when a new version creates its own, and the oldest atmospheres and
-    tiles of clouds when all of them exceed 1 GB.
+    used for 30 days are removed when a new version creates its own, the oldest atmospheres and
+    tiles of clouds when all of them exceed 1 GB, and the oldest light of clouds beyond 0.5 GB.
     """
     from skybake.jit.cache import cache_root, cache_usage, version_directory
 
@@ -49,13 +49,15 @@ def info(as_json: bool) -> None:
             f"{usage.folder.name}{mark}: {usage.kernels} kernels "
             f"{usage.kernel_bytes / _MEGABYTE:.1f} MB, {usage.atmospheres} atmospheres "
             f"{usage.atmosphere_bytes / _MEGABYTE:.1f} MB, {usage.cloud_tiles} tiles of clouds "
-            f"{usage.cloud_tile_bytes / _MEGABYTE:.1f} MB"
+            f"{usage.cloud_tile_bytes / _MEGABYTE:.1f} MB, "
+            f"light of {usage.cloud_lights} skies with clouds "
+            f"{usage.cloud_light_bytes / _MEGABYTE:.1f} MB"
         )
 
 
 @cache.command()
 def clear() -> None:
-    """Remove kernels, atmospheres and tiles of clouds of all versions.
+    """Remove kernels, atmospheres, tiles and light of clouds of all versions.
 
     Other files in the folder are left alone.
     """
@@ -138,6 +140,8 @@ def _as_json(usage: Usage, *, is_present: bool) -> dict[str, Any]:
         "atmosphere_bytes": usage.atmosphere_bytes,
         "cloud_tiles": usage.cloud_tiles,
         "cloud_tile_bytes": usage.cloud_tile_bytes,
+        "cloud_lights": usage.cloud_lights,
+        "cloud_light_bytes": usage.cloud_light_bytes,
     }
 
 

@@ -70,7 +70,7 @@ def _prefix(_: click.Context, __: click.Parameter, value: str | None) -> Path | 
 @sun_azimuth_option()
 @moment_options
 @sun_distance_option()
-@moon_options("--time")
+@moon_options("--time", is_light=False)
 @altitude_option()
 @clouds_options()
 @click.option(

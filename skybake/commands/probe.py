@@ -53,7 +53,7 @@ def _wavelengths(text: str) -> tuple[float, ...]:
 @sun_azimuth_option()
 @moment_options
 @sun_distance_option()
-@moon_options("--time")
+@moon_options("--time", is_light=False)
 @altitude_option()
 @clouds_options()
 @click.option(

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
@@ -13,6 +14,11 @@ from skybake.commands.memory import check_memory
 from skybake.commands.options import choices, values
 from skybake.commands.options.clouds import check_clouds, clouds_options
 from skybake.commands.options.maps import map_needs, map_options, map_settings
+from skybake.commands.options.moonlight import (
+    moonlight_from_options,
+    moonlight_needs,
+    moonlight_options,
+)
 from skybake.commands.options.night import (
     lst_option,
     night_from_options,
@@ -43,6 +49,32 @@ from skybake.commands.printing import render_summary
 from skybake.commands.printing.notices import announce, notice, warn
 from skybake.commands.printing.progress import map_progress
 
+if TYPE_CHECKING:
+    from skybake.ephemeris.moment import Moment
+    from skybake.image.settings import MapSettings
+    from skybake.preset import Planet
+
+
+class RequestedMap(NamedTuple):
+    """What a command line asks to be baked.
+
+    Attributes
+    ----------
+    planet : Planet
+        The world, with its changes.
+    settings : MapSettings
+        Of the map.
+    moment : Moment or None
+        When, if a time is given.
+    leaves_disc_out : bool
+        Whether the map has no disc because lights are written besides.
+    """
+
+    planet: Planet
+    settings: MapSettings
+    moment: Moment | None
+    leaves_disc_out: bool
+
 
 @click.command()
 @world_options
@@ -51,6 +83,7 @@ from skybake.commands.printing.progress import map_progress
 @moment_options
 @sun_distance_option()
 @moon_options("--time")
+@moonlight_options
 @altitude_option()
 @night_options
 @lst_option
@@ -95,7 +128,29 @@ def render(**options: Any) -> None:
     """
     check_memory()
     started = time.perf_counter()
-    context = click.get_current_context()
+    _bake(click.get_current_context(), options, started)
+
+
+def requested_map(
+    context: click.Context, load_world: Callable[[click.Context], Planet] = world_from_options
+) -> RequestedMap:
+    """Return the map that the options of a command line ask for.
+
+    Parameters
+    ----------
+    context : click.Context
+        With the options of `render`.
+    load_world : callable, optional
+        Loads the world, which may be known already.
+
+    Raises
+    ------
+    click.UsageError
+        If an option is out of its range, or would have no effect with the others.
+    SkybakeError
+        If the preset cannot be used.
+    """
+    options = dict(context.params)
     is_timed = options["time"] is not None
     check_needs(
         context,
@@ -103,6 +158,7 @@ def render(**options: Any) -> None:
         sun_distance_needs(options, is_timed=is_timed, time="--time"),
         moon_needs(options, is_timed=is_timed, time="--time"),
         night_needs(options, is_timed=is_timed, time="--time"),
+        moonlight_needs(options, is_timed=is_timed, time="--time"),
         map_needs(options),
         preview_needs(options),
     )
@@ -111,28 +167,38 @@ def render(**options: Any) -> None:
         # A renderer that took the disc and the light would count the sun twice.
         options["sun_disc"] = "exclude"
     moment = moment_from_options(context)
+    where = positions(options, moment)
     settings = map_settings(
         options,
-        **positions(options, moment),
+        **where,
         night=night_from_options(options, moment),
+        moonlight=moonlight_from_options(options, moment, where),
     )
 
-    from skybake.baking import bake, default_path, late_kernels
-    from skybake.baking.paths import preview_beside
     from skybake.image.sun_distance import sun_distance
 
-    planet = world_from_options(context)
+    planet = load_world(context)
     check_clouds(context, planet)
     distance = sun_distance(planet, moment, options["sun_distance"])
     moon = moon_from_options(options, planet, moment, distance)
     lighting = replace(settings.lighting, sun_distance=distance, moon=moon)
     settings = replace(settings, lighting=lighting)
+    return RequestedMap(planet, settings, moment, leaves_disc_out)
+
+
+def _bake(context: click.Context, options: dict[str, Any], started: float) -> None:
+    requested = requested_map(context)
+    planet, settings, moment = requested.planet, requested.settings, requested.moment
+
+    from skybake.baking import bake, default_path, late_kernels
+    from skybake.baking.paths import preview_beside
+
     output = options["output"] or default_path(planet, settings)
     preview = preview_beside(output) if options["preview"] == BESIDE else options["preview"]
     quiet = options["quiet"]
     if not quiet:
         announce(output)
-        if leaves_disc_out:
+        if requested.leaves_disc_out:
             notice("the map leaves out the sun's disc, which is a light of its own")
     with late_kernels.compiled_in_background(), map_progress(quiet=quiet) as progress:
         baked = bake(

@@ -21,9 +21,11 @@ from skybake.commands.options.emit import (
     is_asked,
 )
 from skybake.commands.options.maps import map_needs, map_options, map_settings
+from skybake.commands.options.moonlight import moonlight_needs, moonlight_of_sequence
 from skybake.commands.options.night import night_from_options, night_needs, night_options
 from skybake.commands.options.observer import (
     altitude_option,
+    moon_by_place,
     moon_needs,
     moon_options,
     sun_azimuth_option,
@@ -159,6 +161,7 @@ def sequence(**options: Any) -> None:
         sun_distance_needs(options, is_timed=is_timed, time=times),
         moon_needs(options, is_timed=is_timed, time=times),
         night_needs(options, is_timed=is_timed, time=times),
+        moonlight_needs(options, is_timed=is_timed, time=times),
         map_needs(options),
         preview_needs(options),
         emit_needs(options),
@@ -223,8 +226,9 @@ def _plan_from_options(context: click.Context) -> Plan:
     settings = map_settings(
         options,
         clouds_quality=options["clouds_quality"],
-        moon=options["moon"],
+        moon=moon_by_place(options),
         night=night_from_options(options),
+        moonlight=moonlight_of_sequence(options),
     )
     changes = changes_from_options(context)
 

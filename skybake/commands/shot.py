@@ -22,6 +22,11 @@ from skybake.commands.options.camera import (
 )
 from skybake.commands.options.clouds import check_clouds, clouds_options
 from skybake.commands.options.maps import given_settings, map_options
+from skybake.commands.options.moonlight import (
+    moonlight_from_options,
+    moonlight_needs,
+    moonlight_options,
+)
 from skybake.commands.options.night import (
     lst_option,
     night_from_options,
@@ -49,6 +54,7 @@ from skybake.commands.printing.progress import map_progress
 from skybake.errors import InputError
 
 if TYPE_CHECKING:
+    from skybake.ephemeris.lit_moon import LitMoon
     from skybake.preset import Planet
     from skybake.projection import Perspective
 
@@ -67,6 +73,7 @@ _STORED = (
 @moment_options
 @sun_distance_option()
 @moon_options("--time")
+@moonlight_options
 @altitude_option()
 @night_options
 @lst_option
@@ -140,6 +147,7 @@ def shot(**options: Any) -> None:
         sun_distance_needs(options, is_timed=is_timed, time="--time"),
         moon_needs(options, is_timed=is_timed, time="--time"),
         night_needs(options, is_timed=is_timed, time="--time"),
+        moonlight_needs(options, is_timed=is_timed, time="--time"),
         _needs(options),
     )
     moment = moment_from_options(context)
@@ -152,13 +160,15 @@ def shot(**options: Any) -> None:
 
     planet = world_from_options(context)
     check_clouds(context, planet)
-    projection = _projection(options, planet, where)
+    moonlight = moonlight_from_options(options, moment, where)
+    projection = _projection(options, planet, where, moonlight.moon)
     try:
         settings = image_settings.map_settings(
             projection,
             **given_settings(options),
             **where,
             night=night_from_options(options, moment),
+            moonlight=moonlight,
         )
     except InputError as error:
         raise click.UsageError(f"--{error}") from error
@@ -219,7 +229,9 @@ def _needs(options: Mapping[str, Any]) -> Needs:
     }
 
 
-def _projection(options: Mapping[str, Any], planet: Planet, where: dict[str, Any]) -> Perspective:
+def _projection(
+    options: Mapping[str, Any], planet: Planet, where: dict[str, Any], moon: LitMoon | None
+) -> Perspective:
     """Return what the camera sees; a height of its own is added to the altitude in `where`."""
     from skybake.image.aim import Aim, Lookout, aimed
 
@@ -232,7 +244,7 @@ def _projection(options: Mapping[str, Any], planet: Planet, where: dict[str, Any
         name, azimuth, elevation = options["look"] or ("horizon", None, 0.0)
         return aimed(
             Aim(name, azimuth, elevation),
-            Lookout(planet, where["altitude"], where["sun_azimuth"], where["sun_elevation"]),
+            Lookout(planet, where["altitude"], where["sun_azimuth"], where["sun_elevation"], moon),
             size or SIZE,
             fov=options["fov"],
             roll=options["roll"] or 0.0,

@@ -13,6 +13,9 @@ from skybake.ephemeris.place import Place
 # Julian ones, where datetime has the Gregorian calendar throughout.
 _DUBLIN_EPOCH = datetime(1899, 12, 31, 12, tzinfo=UTC)
 
+J2000_DAYS = 36525.0
+"""2000-01-01 12:00 as `ephem_days` counts it. [d]"""
+
 # Sæmundsson's formula has a pole at -5.1 deg, and no light of a sun below this grazes
 # an atmosphere that is dense enough to bend it much.
 _LIFT_FADES = math.radians(-1.0)

@@ -55,7 +55,7 @@ def sun_and_moon(time: datetime, place: Place, altitude: float) -> tuple[Array, 
     year = time.astimezone(UTC).year
     if FIRST_YEAR <= year <= _LAST_LEAP_KNOWN:
         days += (tt_less_utc(time) - ephem.delta_t(days)) / _DAY_SECONDS
-    here = _observer(place.latitude, altitude)
+    here = observer_on_ellipsoid(place.latitude, altitude)
     return (
         east_north_up(_place(ephem.Sun(days)), sidereal, place.latitude, here),
         east_north_up(_place(ephem.Moon(days)), sidereal, place.latitude, here),
@@ -71,8 +71,8 @@ def _place(body: ephem.Body) -> Array:
     return place
 
 
-def _observer(latitude: float, altitude: float) -> tuple[float, float]:
-    """Distances of an observer from the axis and from the plane of the equator. [km]"""
+def observer_on_ellipsoid(latitude: float, altitude: float) -> tuple[float, float]:
+    """Return distances of an observer from the axis and from the plane of the equator. [km]"""
     squared = _FLATTENING * (2.0 - _FLATTENING)
     normal = _EQUATORIAL_RADIUS / math.sqrt(1.0 - squared * math.sin(latitude) ** 2)
     return (

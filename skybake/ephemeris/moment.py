@@ -11,6 +11,7 @@ from skybake.ephemeris.celestial import CelestialFrame
 from skybake.ephemeris.clock import Clock, argument
 from skybake.ephemeris.earth import sun_distance, sun_position
 from skybake.ephemeris.horizon import Horizon
+from skybake.ephemeris.lit_moon import LitMoon
 from skybake.ephemeris.local_clock import local_text, utc_text
 from skybake.ephemeris.mars import distance_in_season, mars_time, sun_in_season
 from skybake.ephemeris.moon import Moon
@@ -49,6 +50,8 @@ class Moment:
         The moon that is nearest to the sun; None in a season of Mars, which has no date.
     celestial : CelestialFrame or None
         How the stars stand.
+    lit_moon : LitMoon or None
+        The Moon as a light, on Earth.
     """
 
     time: datetime | None
@@ -60,6 +63,7 @@ class Moment:
     attributes: Mapping[str, str | float]
     moon: Moon | None = None
     celestial: CelestialFrame | None = None
+    lit_moon: LitMoon | None = None
 
     @property
     def is_refracted(self) -> bool:
@@ -230,7 +234,8 @@ def _at(time: datetime, zone: tzinfo | None, place: Place, horizon: Horizon) -> 
     sun = elevation, azimuth
     moon = _moon(time, place, horizon, *sun)
     distance, stars = sun_distance(time), frame_at(time, place)
-    return Moment(time, label, place, *sun, distance, attributes, moon, stars)
+    lit = _lit_moon(time, place, horizon)
+    return Moment(time, label, place, *sun, distance, attributes, moon, stars, lit)
 
 
 def _moon(time: datetime, place: Place, horizon: Horizon, elevation: float, azimuth: float) -> Moon:
@@ -238,6 +243,13 @@ def _moon(time: datetime, place: Place, horizon: Horizon, elevation: float, azim
     from skybake.ephemeris.moons import moon_before_sun
 
     return moon_before_sun(time, place, horizon.altitude, azimuth, elevation)
+
+
+def _lit_moon(time: datetime, place: Place, horizon: Horizon) -> LitMoon:
+    # As of `_moon`.
+    from skybake.ephemeris.moonlight import lit_moon_at
+
+    return lit_moon_at(time, place, horizon.altitude, horizon.lift if horizon.refraction else None)
 
 
 def _in_season(season: float, seconds: float, place: Place) -> Moment:

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from skybake.ephemeris import earth_moon, mars_moons
 from skybake.ephemeris.moon import MEAN_RADIUS, Moon
 from skybake.ephemeris.place import Place
+from skybake.ephemeris.topocentric import turn
 
 Array = npt.NDArray[np.float64]
 
@@ -43,7 +44,7 @@ def moon_before_sun(
         sun, moon = earth_moon.sun_and_moon(time, place, altitude)
         moons = [(moon, MEAN_RADIUS)]
     where, radius = min(moons, key=lambda each: _angle(sun, each[0]) - each[1] / _length(each[0]))
-    turned = _turn(sun, _direction(sun_azimuth, sun_elevation), where)
+    turned = turn(sun, _direction(sun_azimuth, sun_elevation), where)
     distance = _length(turned)
     return Moon(
         azimuth=math.atan2(turned[0], turned[1]) % (2.0 * math.pi),
@@ -56,17 +57,6 @@ def moon_before_sun(
 def _direction(azimuth: float, elevation: float) -> Array:
     flat = math.cos(elevation)
     return np.array([flat * math.sin(azimuth), flat * math.cos(azimuth), math.sin(elevation)])
-
-
-def _turn(start: Array, end: Array, vector: Array) -> Array:
-    """Turn a vector by the rotation that takes one direction the shortest way to another."""
-    start = start / _length(start)
-    axis = np.cross(start, end)
-    return (
-        vector * (start @ end)
-        + np.cross(axis, vector)
-        + axis * (axis @ vector) / (1.0 + start @ end)
-    )
 
 
 def _angle(one: Array, other: Array) -> float:

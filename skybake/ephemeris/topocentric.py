@@ -37,3 +37,25 @@ def east_north_up(
             northward * math.sin(latitude) + outward * math.cos(latitude),
         ]
     )
+
+
+def turn(start: Array, end: Array, vector: Array) -> Array:
+    """Turn a vector by the rotation that takes one direction the shortest way to another.
+
+    Parameters
+    ----------
+    start : ndarray of float64, shape (3,)
+        Of any length.
+    end : ndarray of float64, shape (3,)
+        Unit vector, not opposite to `start`.
+    vector : ndarray of float64, shape (3,)
+        Keeps its length.
+    """
+    start = start / np.linalg.norm(start)
+    axis = np.cross(start, end)
+    turned: Array = (
+        vector * (start @ end)
+        + np.cross(axis, vector)
+        + axis * (axis @ vector) / (1.0 + start @ end)
+    )
+    return turned

@@ -11,6 +11,7 @@ from skybake.angles import direction_from_angles, zenith_azimuth
 from skybake.colour.space import rgb_from_xyz
 from skybake.ibl.cube import Cube, texel_directions
 from skybake.ibl.points import Points, disc, no_points
+from skybake.image.discs import sun_flux
 from skybake.image.raster import Raster
 from skybake.image.scene import Scene
 from skybake.projection.cells import Cells
@@ -71,7 +72,7 @@ def sun_points(scene: Scene) -> Points:
     zenith, azimuth = zenith_azimuth(directions)
     nowhere = np.zeros((len(sizes), 0))
     cells = Cells(zenith, azimuth, distances, sizes, nowhere.astype(np.int64), nowhere)
-    flux = scene.disc_flux(cells)
+    flux = sun_flux(scene, cells)
     # As much light as files state, of which the parts of the disc are a coarser sum.
     encoding = scene.settings.encoding
     stated = rgb_from_xyz(encoding.space) @ scene.sun_xyz()[0] / encoding.white_luminance

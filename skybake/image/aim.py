@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from skybake.ephemeris.lit_moon import LitMoon
 from skybake.errors import InputError
 from skybake.preset import Planet
 from skybake.projection import Perspective
@@ -12,7 +13,7 @@ from skybake.projection.perspective import WIDEST
 from skybake.sky.observer import LOWEST_EYE
 from skybake.sky.table import horizon_angles
 
-AIMS = ("sun", "horizon", "limb", "planet")
+AIMS = ("sun", "moon", "horizon", "limb", "planet")
 
 USUAL_FOV = math.radians(50.0)
 
@@ -29,7 +30,7 @@ class Aim:
 
     Attributes
     ----------
-    name : {"sun", "horizon", "limb", "planet"} or None
+    name : {"sun", "moon", "horizon", "limb", "planet"} or None
         What it is; None for a direction.
     azimuth : float or None
         Compass bearing of the direction, or of the place at the horizon or the limb; None for that
@@ -55,12 +56,15 @@ class Lookout:
         Of the camera above the ground. [km]
     sun_azimuth, sun_elevation : float
         [rad]
+    moon : LitMoon or None
+        Where the Moon is, if it is shown.
     """
 
     planet: Planet
     altitude: float
     sun_azimuth: float
     sun_elevation: float
+    moon: LitMoon | None = None
 
     @property
     def is_in_space(self) -> bool:
@@ -102,8 +106,8 @@ def aimed(
     Raises
     ------
     InputError
-        If the limb or the planet is to be seen from within the atmosphere, or no picture is wide
-        enough for the planet.
+        If the limb or the planet is to be seen from within the atmosphere, no picture is wide
+        enough for the planet, or there is no Moon.
     """
     azimuth, elevation = _direction(aim, lookout)
     width, height = size
@@ -118,6 +122,10 @@ def _direction(aim: Aim, lookout: Lookout) -> tuple[float, float]:
         return azimuth, aim.elevation
     if aim.name == "sun":
         return lookout.sun_azimuth, lookout.sun_elevation
+    if aim.name == "moon":
+        if lookout.moon is None:
+            raise InputError("look: moon must be in the sky, got none")
+        return lookout.moon.azimuth, lookout.moon.elevation
     if aim.name != "horizon" and not lookout.is_in_space:
         raise InputError(
             f"look: {aim.name} needs a camera above the atmosphere, "

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from skybake.image.scene import CELLS_AT_ONCE, Scene
+from skybake.image.discs import CELLS_AT_ONCE
+from skybake.image.scene import Scene
 from skybake.optics.medium import Array
 from skybake.sky.disc import Disc
 

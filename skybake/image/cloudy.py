@@ -8,6 +8,8 @@ from collections.abc import Callable
 import numpy as np
 
 from skybake.clouds.cloudscape import Cloudscape
+from skybake.clouds.directions import unit_vectors
+from skybake.clouds.rows import see_rows
 from skybake.colour.space import ColourSpace, rgb_from_xyz
 from skybake.optics.medium import Array
 
@@ -27,13 +29,15 @@ class CloudsOver:
     Parameters
     ----------
     cloudscape : Cloudscape
-        The clouds; its channels are XYZ, in the scale of pixel values.
+        The clouds; its channels are XYZ. [cd m⁻²]
     clear : callable
         The clear sky's pixels at zenith angles and azimuths, with their footprints.
     sun_azimuth : float
         Compass bearing from which azimuths count. [rad]
     space : ColourSpace
         Of the pixels.
+    white_luminance : float
+        Of pixels of 1. [cd m⁻²]
     """
 
     def __init__(
@@ -42,11 +46,12 @@ class CloudsOver:
         clear: Callable[[Array, Array, Array], np.ndarray],
         sun_azimuth: float,
         space: ColourSpace,
+        white_luminance: float,
     ) -> None:
         self._cloudscape = cloudscape
         self._clear = clear
         self._sun_azimuth = sun_azimuth
-        to_rgb = rgb_from_xyz(space)
+        to_rgb = rgb_from_xyz(space) / white_luminance
         # In XYZ no light is negative, as ratios need.
         self._to_rgb = to_rgb.T.astype(np.float32)
         self._to_xyz = np.linalg.inv(to_rgb).T.astype(np.float32)
@@ -68,10 +73,9 @@ class CloudsOver:
         shape = pixels.shape[:2]
         if not pixels.size:
             return pixels, np.zeros(shape, np.float32)
-        angle, around, extent = (
-            np.broadcast_to(each, shape).ravel() for each in (zenith, azimuth, footprint)
-        )
-        out, opacity = self._put(pixels.reshape(-1, 3), angle, around, extent)
+        out, opacity = self._put(pixels, zenith, azimuth, footprint)
+        places = (np.broadcast_to(each, shape) for each in (zenith, azimuth, footprint))
+        angle, around, extent = (each.ravel() for each in places)
         above = (self._cloudscape.horizon - angle) / extent + 0.5
         is_both = (above > WHOLE) & (above < 1.0 - WHOLE)
         if is_both.any():
@@ -92,23 +96,42 @@ class CloudsOver:
             middle, extent = 0.5 * (begin + end), end - begin
             clear = self._clear(middle[:, None], azimuth[:, None], extent[:, None])[:, 0]
             share = (extent / footprint).astype(np.float32)
-            light, opacity = self._put(clear, middle, azimuth, footprint)
+            alone = (each[:, None] for each in (middle, azimuth, footprint))
+            light, opacity = self._put(clear[:, None], *alone)
             total += share[:, None] * light
             hidden += share * opacity
         return total, hidden
 
     def _put(
-        self, pixels: np.ndarray, zenith: Array, azimuth: Array, footprint: Array
+        self, pixels: np.ndarray, zenith: Array, azimuth: Array, footprint: Array | float
     ) -> tuple[np.ndarray, np.ndarray]:
+        """Return pixels (pixel, 3) of rows (row, column, 3) with clouds, and what these hide."""
+        clouds, shape = self._cloudscape, pixels.shape[:2]
         xyz = pixels @ self._to_xyz
-        bearing = azimuth + self._sun_azimuth
         # Each pixel by its own size: which others are in its band must not matter.
-        classes = np.rint(np.log(footprint) / math.log(ALIKE)).astype(int)
-        light, opacity = np.empty_like(xyz), np.empty(zenith.size, np.float32)
-        for each in np.unique(classes).tolist():
-            at = np.flatnonzero(classes == each)
-            resolved = RESOLVED * ALIKE**each
-            light[at], opacity[at] = self._cloudscape.put_into(
-                xyz[at], zenith[at], bearing[at], resolved
-            )
+        sizes = np.rint(np.log(footprint) / math.log(ALIKE)).astype(int)
+        classes, extent = (np.broadcast_to(each, shape) for each in (sizes, footprint))
+        angle, bearing = (
+            np.broadcast_to(each, shape).ravel() for each in (zenith, azimuth + self._sun_azimuth)
+        )
+        directions, classes = unit_vectors(angle, bearing), classes.ravel()
+
+        def see(pixels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            return _see(clouds, directions[pixels], classes[pixels])
+
+        given = directions.reshape(*shape, 3), np.ascontiguousarray(extent, float), xyz
+        seen, passing = see_rows(see, *given, clouds.alike, clouds.workers)
+        light, opacity = clouds.put_into(xyz.reshape(-1, 3), angle, bearing, seen, passing)
         return light @ self._to_rgb, opacity
+
+
+def _see(
+    clouds: Cloudscape, directions: Array, classes: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """See pixels whose sizes are powers of `ALIKE`."""
+    seen = np.empty((len(clouds.layers), len(directions), 3), np.float32)
+    passing = np.empty_like(seen)
+    for each in np.unique(classes).tolist():
+        at = np.flatnonzero(classes == each)
+        seen[:, at], passing[:, at] = clouds.see(directions[at], RESOLVED * ALIKE**each)
+    return seen, passing

@@ -15,6 +15,7 @@ from skybake.image.light import (
     attributes_from_light,
     eclipse_attributes,
     light_of_scene,
+    moon_attributes,
     star_attributes,
 )
 from skybake.image.meter import scene_ev, scene_white
@@ -149,6 +150,7 @@ def image_of_scene(scene: Scene, progress: Callable[[float], None] | None = None
             **attributes_from_light(light),
             **eclipse_attributes(scene),
             **star_attributes(scene),
+            **moon_attributes(scene),
             **recipe_attributes(scene.planet, scene.settings),
         },
     )

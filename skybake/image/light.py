@@ -93,6 +93,15 @@ def star_attributes(scene: Scene) -> dict[str, float]:
     return {STAR_ILLUMINANCE: star_illuminance(scene, scene.stars)}
 
 
+def moon_attributes(scene: Scene) -> dict[str, Attribute]:
+    """Return the attributes of a map's files that tell of its Moon, none without one."""
+    if scene.moonlit is None:
+        return {}
+    from skybake.image.moon_figures import moon_figures
+
+    return moon_figures(scene, scene.moonlit).attributes()
+
+
 def light_from_attributes(attributes: Mapping[str, Any]) -> Light:
     """Return the light that the attributes of a map's file state.
 
@@ -104,15 +113,15 @@ def light_from_attributes(attributes: Mapping[str, Any]) -> Light:
     KeyError, ValueError
         If one of them is missing, or is not what `attributes_from_light` made.
     """
-    values = {field: _numbers(attributes[name]) for field, name in _ATTRIBUTES.items()}
+    values = {field: numbers_of(attributes[name]) for field, name in _ATTRIBUTES.items()}
     direction, colour = values.pop("sun_direction"), values.pop("sun_colour")
     (dx, dy, dz), (red, green, blue) = direction, colour
     figures = {field: value for field, (value,) in values.items()}
     return Light(sun_direction=(dx, dy, dz), sun_colour=(red, green, blue), **figures)
 
 
-def _numbers(value: Any) -> list[float]:
-    """Numbers of an attribute, which a Radiance picture holds as text."""
+def numbers_of(value: Any) -> list[float]:
+    """Return the numbers of an attribute, which a Radiance picture holds as text."""
     values = value.split() if isinstance(value, str) else np.atleast_1d(value)
     # What str prints of a number, a program can change.
     return [float(np.format_float_scientific(np.float32(number))) for number in values]

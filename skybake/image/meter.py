@@ -58,4 +58,6 @@ def scene_white(scene: Scene, settings: PictureSettings) -> Array | None:
     star: Array = scene.xyz_weights.sum(axis=0)
     _, direct = scene.sun_xyz()
     light = direct + scene.sky_xyz()
+    if scene.moonlit is not None:
+        light = light + scene.moonlit.xyz()[1]
     return automatic_white(light if light[1] > NO_LIGHT * star[1] else star)

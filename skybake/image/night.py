@@ -77,6 +77,11 @@ class Night:
         return self.is_shown and self.frame is not None and self.stars != "only"
 
     @property
+    def is_plate(self) -> bool:
+        """Whether maps hold stars and nothing else."""
+        return self.shows_stars and self.stars == "only"
+
+    @property
     def shows_stars(self) -> bool:
         """Whether there can be any."""
         return self.is_shown and self.frame is not None and self.stars != "exclude"

@@ -1,12 +1,12 @@
 """Parts of a map that are kept in one file, and add up to it.
 
 They are ``beauty``, the map as it is without parts; ``sky``; ``clouds``, premultiplied, with an
-alpha that says how much of the sky they hide; ``sun``, the disc; ``stars``, through air and clouds;
-and ``transmittance`` of air and clouds to space. With all of them::
+alpha that says how much of the sky they hide; ``sun`` and ``moon``, the discs; ``stars``, through
+air and clouds; and ``transmittance`` of air and clouds to space. With all of them::
 
-    beauty = sky * (1 - clouds.A) + clouds + sun + stars
+    beauty = sky * (1 - clouds.A) + clouds + sun + moon + stars
 
-and without `sun` in `beauty` if the disc is separate.
+and without `sun` and `moon` in `beauty` if the disc is separate.
 """
 
 from __future__ import annotations
@@ -31,12 +31,14 @@ def part_names(scene: Scene) -> tuple[str, ...]:
         return ("beauty",)
     has_stars = encoding.layers and scene.stars is not None
     has_clouds = encoding.layers and scene.cloudscape is not None
+    has_moon = "moon" in scene.layer_names
     has_beauty = encoding.layers and (has_clouds or has_stars or lighting.sun_disc == "include")
     is_there = {
         "beauty": has_beauty,
         "sky": True,
         "clouds": has_clouds,
-        "sun": lighting.sun_disc != "exclude",
+        "sun": lighting.sun_disc != "exclude" and not scene.settings.moonlight.is_alone,
+        "moon": has_moon,
         "stars": has_stars,
         "transmittance": lighting.sun_disc == "separate",
     }
@@ -77,14 +79,13 @@ def band_parts(raster: Raster, scene: Scene, first: int, last: int) -> tuple[Pix
         found["sky"] = clouded = _clamped(raster.band("sky", first, last), clamps)
     found |= {
         name: _clamped(raster.band(name, first, last), clamps)
-        for name in ("sun", "stars")
+        for name in ("sun", "moon", "stars")
         if name in names
     }
     if "beauty" in names:
         is_whole = scene.settings.lighting.sun_disc == "include"
-        found["beauty"] = clouded + found["sun"] if is_whole else clouded
-        if "stars" in found:
-            found["beauty"] = found["beauty"] + found["stars"]
+        added = ("sun", "moon", "stars") if is_whole else ("stars",)
+        found["beauty"] = sum((found[name] for name in added if name in found), clouded)
     if "transmittance" in names:
         through = _clamped(raster.band("transmittance", first, last), clamps)
         found["transmittance"] = through if hidden is None else through * (1.0 - hidden)

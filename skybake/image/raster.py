@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from skybake.image.discs import shown_moon, shown_sun
 from skybake.image.layers import RGB, Layer, Layers, Pixels
 from skybake.image.scene import Scene
 from skybake.image.splat import Splat
@@ -21,10 +22,12 @@ CHANNELS = {
     "sun": RGB,
     "apart": (*RGB, "clouded.R", "clouded.G", "clouded.B", "A"),
     "transmittance": RGB,
+    "moon": RGB,
     "stars": RGB,
 }
 """Layers that a raster fills: the sky with its clouds; the sun's disc; the clear sky, the sky with
-its clouds, and the share that they hide; the transmittance of the air to space; and stars."""
+its clouds, and the share that they hide; the transmittance of the air to space; the Moon's disc;
+and stars."""
 
 Evaluate = Callable[[np.ndarray, np.ndarray, np.ndarray], Pixels]
 
@@ -48,7 +51,7 @@ class Raster:
     Attributes
     ----------
     peak : float
-        Largest value that the sun's disc or a star adds to a pixel.
+        Largest value that a disc or a star adds to a pixel.
     """
 
     def __init__(self, scene: Scene, canvas: Canvas) -> None:
@@ -97,7 +100,10 @@ class _Shown:
     def __init__(self, scene: Scene, part: Part) -> None:
         self._scene, self._part = scene, part
         self._chart = part.chart
-        self._points: dict[str, Splat | StarSpots] = {"sun": Splat(scene, part.chart)}
+        self._points: dict[str, Splat | StarSpots] = {
+            "sun": Splat(shown_sun(scene), part.chart),
+            "moon": Splat(shown_moon(scene), part.chart),
+        }
         if "stars" in scene.layer_names:
             from skybake.image.starry import StarSpots
 

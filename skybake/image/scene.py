@@ -10,19 +10,17 @@ import numpy as np
 
 from skybake.colour.space import luminance_weights, rgb_from_xyz
 from skybake.errors import InputError
+from skybake.image.discs import drawn_sun
 from skybake.image.horizontal import horizontal_irradiance
 from skybake.image.luminous import luminous_weights
 from skybake.image.settings import MapSettings
 from skybake.image.stages import Stages
-from skybake.image.sun_size import drawn_radius
 from skybake.image.survey import SURVEY_ROWS, Survey, survey_directions
 from skybake.jit.arguments import flatten
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.medium import Array
 from skybake.preset import Planet
-from skybake.projection.cells import Cells
 from skybake.sky.disc import Disc
-from skybake.sky.drawn_disc import DrawnDisc
 from skybake.sky.pixels import allocate_pixels, fill_directions
 from skybake.sky.sky import Sky
 from skybake.sky.table import FoldedTable
@@ -31,10 +29,9 @@ if TYPE_CHECKING:
     from skybake.clouds.cloudscape import Cloudscape
     from skybake.image.cloudy import CloudsOver
     from skybake.image.eclipsed import LeftShare
+    from skybake.image.moonlit import Moonlit
     from skybake.image.night_glow import NightGlow
     from skybake.night.stars import Stars
-
-CELLS_AT_ONCE = 32768
 
 
 class Scene:
@@ -98,16 +95,7 @@ class Scene:
         InputError
             If it is to be soft and no such disc fits half floats.
         """
-        lighting = self.settings.lighting
-        source = self.sky.source
-        if lighting.sun_size is None and not lighting.sun_soft:
-            return Disc(self.sky.skylight, source)
-        flux = lighting.sun_strength * float(self.rgb_weights.sum(axis=0).max())
-        # Before the atmosphere is solved for, which takes long.
-        radius = drawn_radius(lighting, source.angular_radius, flux)
-        return DrawnDisc(
-            self.sky.skylight, source, angular_radius=radius, is_soft=lighting.sun_soft
-        )
+        return drawn_sun(self)
 
     @cached_property
     def xyz_weights(self) -> Array:
@@ -134,7 +122,8 @@ class Scene:
             return None
         from skybake.clouds.build import build_cloudscape
 
-        weights = self.xyz_weights / self.settings.encoding.white_luminance
+        # Of no exposure, so that all share the light.
+        weights = self.xyz_weights
         if self.sky.eclipse is not None:
             weights = weights * self.sky.eclipse.share_for_clouds[:, None]
         return build_cloudscape(
@@ -144,13 +133,14 @@ class Scene:
             time=self.settings.clouds.time,
             quality=self.settings.clouds.quality,
             workers=self.workers,
+            keeps_light=self._stages.keeps_light_of_clouds,
         )
 
     @cached_property
     def stars(self) -> Stars | None:
         """The stars over the observer, or None where none are seen."""
         night = self.settings.night
-        if night.frame is None or not night.shows_stars:
+        if night.frame is None or not night.shows_stars or self.settings.moonlight.is_alone:
             return None
         from skybake.image.outshone import stars_are_outshone
 
@@ -164,7 +154,7 @@ class Scene:
     def night_glow(self) -> NightGlow | None:
         """The light of the sky between the stars, or None where none is seen."""
         night = self.settings.night
-        if night.frame is None or not night.shows_glow:
+        if night.frame is None or not night.shows_glow or self.settings.moonlight.is_alone:
             return None
         from skybake.image.outshone import glow_is_outshone
 
@@ -173,6 +163,16 @@ class Scene:
         from skybake.image.night_glow import glow_over
 
         return glow_over(self, night.frame)
+
+    @cached_property
+    def moonlit(self) -> Moonlit | None:
+        """The Moon over the observer, or None where there is none."""
+        shown = self.settings.moonlight
+        if shown.moon is None or shown.shown == "exclude" or self.settings.night.is_plate:
+            return None
+        from skybake.image.moonlit import Moonlit
+
+        return Moonlit(self, shown.moon, self._stages)
 
     def light_clouds(self) -> None:
         """Solve for the light of clouds, which takes longest, before pixels show them."""
@@ -193,12 +193,20 @@ class Scene:
         UnsolvableError
             If its luminance is negative beyond rounding, or not finite.
         """
-        if self.cloudscape is None and self.night_glow is None:
+        if self.cloudscape is None and not self._is_lit_by_night:
             return self.clear_survey
         if self.cloudscape is None:
             return self.evaluate(*survey_directions())
         coarse = self.evaluate(*survey_directions(SURVEY_ROWS // 2))
         return np.repeat(np.repeat(coarse, 2, axis=0), 2, axis=1)
+
+    @property
+    def _is_lit_by_night(self) -> bool:
+        """Whether the sky has other light than the sun's."""
+        return self.night_glow is not None or (
+            self.moonlit is not None
+            and (self.moonlit.lights_air or self.settings.moonlight.is_alone)
+        )
 
     @cached_property
     def _surveyed(self) -> Survey:
@@ -217,28 +225,21 @@ class Scene:
         if self.settings.night.stars == "only":
             return ("stars",)
         disc = self.settings.lighting.sun_disc
-        names = ("sun",) if disc == "only" else ("sky",) if disc == "exclude" else ("sky", "sun")
-        return (*names, "stars") if "sky" in names and self.stars is not None else names
+        if disc == "only":
+            return ("sun",)
+        is_there = {
+            "sky": True,
+            "sun": disc != "exclude" and not self.settings.moonlight.is_alone,
+            "moon": disc != "exclude" and self.moonlit is not None and self.moonlit.is_up,
+            "stars": self.stars is not None,
+        }
+        return tuple(name for name, there in is_there.items() if there)
 
     @property
     def luminance(self) -> Array:
         """Luminance [cd m⁻²] of pixel values is their product with these, (3,)."""
         encoding = self.settings.encoding
         return encoding.white_luminance * luminance_weights(encoding.space)
-
-    def disc_flux(self, cells: Cells) -> Array:
-        """Pixel value times solid angle that each cell of the disc adds, (cell, 3). [sr]"""
-        flux = np.empty((cells.distance.size, 3))
-        # A sun in the zenith touches every column, and its spectra would fill the memory.
-        for first in range(0, len(flux), CELLS_AT_ONCE):
-            part = slice(first, first + CELLS_AT_ONCE)
-            bearing = cells.azimuth[part] + self.settings.view.rotation
-            where = cells.zenith[part], cells.distance[part], bearing
-            light = self.sun.radiance_per_irradiance(*where)
-            flux[part] = (light @ self.rgb_weights) * cells.solid_angle[part, None]
-            if self.cloudscape is not None:
-                flux[part] *= self.cloudscape.transmittance(cells.zenith[part], bearing)[:, None]
-        return self.settings.lighting.sun_strength * flux
 
     def sun_xyz(self) -> tuple[Array, Array]:
         """XYZ by the sun's disc, on a plane that faces it and on the horizontal. [lx]"""
@@ -268,7 +269,7 @@ class Scene:
     def _sky_on_horizontal(self) -> Array:
         """Irradiance of the horizontal by the sky, in pixel values, shape (3,). [sr]"""
         # Without clouds, an eclipse or a night both sides of the sun are alike.
-        is_even = self.cloudscape is None and self.sky.eclipse is None and self.night_glow is None
+        is_even = self.cloudscape is None and self.sky.eclipse is None and not self._is_lit_by_night
         return horizontal_irradiance(self.evaluate, is_even=is_even)
 
     def evaluate(self, zenith: Array, azimuth: Array, footprint: Array | float) -> np.ndarray:
@@ -286,13 +287,25 @@ class Scene:
 
     def evaluate_clear(self, zenith: Array, azimuth: Array, footprint: Array | float) -> np.ndarray:
         """Pixel values of the sky without clouds, see `evaluate`."""
-        pixels = self._evaluate(self.table, zenith, azimuth, footprint)
+        pixels = self._sunlit(zenith, azimuth, footprint)
+        if self.night_glow is not None:
+            self.night_glow.add(zenith, azimuth, footprint, pixels)
+        if self.moonlit is not None:
+            self.moonlit.add(zenith, azimuth, footprint, pixels)
+        return pixels
+
+    def _sunlit(self, zenith: Array, azimuth: Array, footprint: Array | float) -> np.ndarray:
+        if self.settings.moonlight.is_alone:
+            shape = np.broadcast_shapes(zenith.shape, azimuth.shape)
+            return np.zeros((*shape, 3), np.float32)
+        return self.without_negative(self._evaluate(self.table, zenith, azimuth, footprint))
+
+    def without_negative(self, pixels: np.ndarray) -> np.ndarray:
+        """Set pixels of negative luminance, which are rounding, to 0, and return them."""
         weights = self.luminance.astype(np.float32)
         # The least value is found 50 times as fast as luminances are.
         if pixels.min(initial=0.0) < 0.0 or weights.min() < 0.0:
             pixels[pixels @ weights < 0.0] = 0.0
-        if self.night_glow is not None:
-            self.night_glow.add(zenith, azimuth, footprint, pixels)
         return pixels
 
     def clouds_over(self, cloudscape: Cloudscape) -> CloudsOver:
@@ -302,12 +315,23 @@ class Scene:
         def clear(zenith: Array, azimuth: Array, footprint: Array) -> np.ndarray:
             return self._evaluate(self.table, zenith, azimuth, footprint)
 
-        lighting, space = self.settings.lighting, self.settings.encoding.space
-        return CloudsOver(cloudscape, clear, lighting.sun_azimuth, space)
+        encoding = self.settings.encoding
+        azimuth = self.settings.lighting.sun_azimuth
+        return CloudsOver(cloudscape, clear, azimuth, encoding.space, encoding.white_luminance)
 
     def _evaluate(
         self, table: FoldedTable, zenith: Array, azimuth: Array, footprint: Array | float
     ) -> np.ndarray:
+        """Light of the sun, which an eclipse dims."""
+        out = self.evaluate_table(table, zenith, azimuth, footprint)
+        if self._left_share is not None:
+            self._left_share.dim(zenith, azimuth, out, self.workers)
+        return out
+
+    def evaluate_table(
+        self, table: FoldedTable, zenith: Array, azimuth: Array, footprint: Array | float
+    ) -> np.ndarray:
+        """Pixel values of a table, of which azimuths are counted from its source."""
         rows, columns = np.broadcast_shapes(zenith.shape, azimuth.shape)
         out = np.empty((rows, columns, 3), np.float32)
         extent = np.atleast_2d(np.asarray(footprint, dtype=float))
@@ -318,8 +342,6 @@ class Scene:
             fill_directions(*pixels, first, last, scratch, out[first:last])
 
         self.workers.run_rows(rows, work, chunk=128 // self.workers.shares(8))
-        if self._left_share is not None:
-            self._left_share.dim(zenith, azimuth, out, self.workers)
         return out
 
     @cached_property

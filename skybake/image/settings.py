@@ -12,6 +12,7 @@ from skybake.colour.space import ColourSpace, find_colour_space
 from skybake.ephemeris.moon import Moon
 from skybake.errors import InputError
 from skybake.formats.compression import parse_compression
+from skybake.image.moonlight import Moonlight
 from skybake.image.night import Night
 from skybake.projection import Equirect, Projection, find_projection
 from skybake.sky.sky import METHODS
@@ -216,6 +217,8 @@ class MapSettings:
         When clouds are seen, if the world has any.
     night : Night
         Which stars are shown.
+    moonlight : Moonlight
+        Where the Moon stands as a light.
     """
 
     view: View = field(default_factory=View)
@@ -223,6 +226,7 @@ class MapSettings:
     encoding: Encoding = field(default_factory=Encoding)
     clouds: Clouds = field(default_factory=Clouds)
     night: Night = field(default_factory=Night)
+    moonlight: Moonlight = field(default_factory=Moonlight)
 
     def recipe(self, *, has_clouds: bool = False) -> dict[str, Any]:
         """All that decides the pixels, in human-readable units, fit for JSON.
@@ -258,6 +262,7 @@ class MapSettings:
             **({} if lighting.moon is None else lighting.moon.recipe()),
             **(self.clouds.recipe() if has_clouds else {}),
             **self.night.recipe(),
+            **self.moonlight.recipe(),
         }
 
 
@@ -278,7 +283,8 @@ def map_settings(
     **values
         Attributes of `View`, `Lighting` and `Encoding`, such as ``sun_elevation=0.1``, of the
         named projection, such as ``layout="cross"``, ``cloud_time`` [s] and
-        ``clouds_quality``, see `Clouds`, and ``night``, a `Night`. With ``target="blender"``
+        ``clouds_quality``, see `Clouds`, ``night``, a `Night`, and ``moonlight``, a
+        `Moonlight`. With ``target="blender"``
         what is not given is as that program needs it, and a rotation turns what it takes for north.
 
     Raises
@@ -294,6 +300,7 @@ def map_settings(
         names = {one.name for one in fields(kind)}
         parts[name] = {key: values.pop(key) for key in names & values.keys()}
     night = values.pop("night", Night())
+    moonlight = values.pop("moonlight", Moonlight())
     clouds = {own: values.pop(name) for name, own in _CLOUDS.items() if name in values}
     if isinstance(projection, str):
         size = (size,) if isinstance(size, int) else size
@@ -303,7 +310,7 @@ def map_settings(
         raise InputError(f"settings: {', '.join(given)} must be given by the projection itself")
     view = View(projection=projection, **parts["view"])
     lighting, encoding = Lighting(**parts["lighting"]), Encoding(**parts["encoding"])
-    return MapSettings(view, lighting, encoding, Clouds(**clouds), night)
+    return MapSettings(view, lighting, encoding, Clouds(**clouds), night, moonlight)
 
 
 def _for_target(

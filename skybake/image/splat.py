@@ -1,21 +1,21 @@
-"""The sun's disc on a chart: flux that is exact at any size of pixels."""
+"""Discs on a chart: flux that is exact at any size of pixels."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from skybake.image.discs import ShownDisc
 from skybake.image.layers import Pixels
-from skybake.image.scene import Scene
 from skybake.projection.chart import Chart
 
 
 class Splat:
-    """Pixel values of the disc of a scene's sun: the rows that it touches, dense.
+    """Pixel values of a disc: the rows that it touches, dense.
 
     Parameters
     ----------
-    scene : Scene
-        Whose sun it is.
+    disc : ShownDisc or None
+        The disc, if there is one.
     chart : Chart
         Where the pixels look.
 
@@ -25,19 +25,19 @@ class Splat:
         Largest value of a pixel.
     """
 
-    def __init__(self, scene: Scene, chart: Chart) -> None:
+    def __init__(self, disc: ShownDisc | None, chart: Chart) -> None:
         width = chart.width
         self._first, self._pixels = 0, np.zeros((0, width, 3), np.float32)
         self.peak = 0.0
-        if "sun" not in scene.layer_names:
+        if disc is None:
             return
-        cells = chart.disc_cells(scene.sun_zenith, scene.sun_bearing, scene.sun.angular_radius)
+        cells = chart.disc_cells(disc.zenith, disc.bearing, disc.angular_radius)
         if cells.distance.size == 0:
             return
         used = cells.texel[cells.weight > 0.0] // width
         self._first = int(used.min())
         rows = int(used.max()) + 1 - self._first
-        flux = scene.disc_flux(cells)
+        flux = disc.flux(cells)
         pixels = np.zeros((rows * width, 3))
         for corner in range(cells.texel.shape[1]):
             weight = cells.weight[:, corner]

@@ -9,7 +9,21 @@ from skybake.sky.table import FoldedTable
 
 
 class Stages:
-    """Computes each stage when it is needed, and keeps none."""
+    """Computes each stage when it is needed, and keeps none.
+
+    Parameters
+    ----------
+    keeps_light_of_clouds : bool, optional
+        Whether the light of clouds is kept on disk, as for another map of the same sky.
+
+    Attributes
+    ----------
+    keeps_light_of_clouds : bool
+        As given.
+    """
+
+    def __init__(self, *, keeps_light_of_clouds: bool = True) -> None:
+        self.keeps_light_of_clouds = keeps_light_of_clouds
 
     def spectral_table(self, sky: Sky, *, finely: bool = False) -> SpectralTable:
         """Light around the observer in all wavelengths; the one stage that traces rays."""

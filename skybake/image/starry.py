@@ -39,6 +39,8 @@ def star_xyz(scene: Scene, stars: Stars) -> Array:
         to_rgb = rgb_from_xyz(find_colour_space("lin_rec709"))
         above = stars.above_air(nodes) @ xyz_weights(nodes, nodes, flat)
         light = (above @ to_rgb.T * stars.transmittance) @ np.linalg.inv(to_rgb).T
+    if scene.moonlit is not None:
+        light[scene.moonlit.hides(stars.vectors)] = 0.0
     if scene.cloudscape is not None:
         zenith, azimuth = zenith_azimuth(stars.vectors)
         light = light * scene.cloudscape.transmittance(zenith, azimuth)[:, None]

@@ -74,16 +74,19 @@ def light_findings(
 
 
 def _held(attributes: Mapping[str, Any], part: str) -> tuple[str, ...]:
-    """Which light a part holds, of sky, sun and stars; none where that is not known."""
+    """Which light a part holds, of sky, sun, Moon and stars; none where that is not known."""
     shown = file_recipe(attributes).get("map")
     disc = shown.get("sun_disc", "include") if isinstance(shown, dict) else "include"
     stars = ("stars",) if "skybake:starIlluminance" in attributes else ()
+    moon = ("moon",) if "skybake:moonIlluminance" in attributes else ()
     if isinstance(shown, dict) and shown.get("stars") == "only":
         return stars
-    by_disc = {"include": ("sky", "sun"), "exclude": ("sky",), "only": ("sun",)}
+    by_disc = {"include": ("sky", "sun", *moon), "exclude": ("sky",), "only": ("sun",)}
+    if isinstance(shown, dict) and shown.get("moonlight") == "only":
+        by_disc["include"] = ("sky", *moon)
     if part in {"", "beauty"}:
         return (*by_disc.get(disc, ("sky",)), *stars)
-    return (part,) if part in {"sky", "sun", "stars"} else ()
+    return (part,) if part in {"sky", "sun", "moon", "stars"} else ()
 
 
 def _tolerance(attributes: Mapping[str, Any]) -> float:
@@ -95,6 +98,7 @@ def _stated(attributes: Mapping[str, Any], held: Sequence[str]) -> float | None:
     names = {
         "sky": "skybake:skyIlluminance",
         "sun": "skybake:directIlluminance",
+        "moon": "skybake:moonIlluminance",
         "stars": "skybake:starIlluminance",
     }
     figures = [_figure(attributes, names[one]) for one in held]

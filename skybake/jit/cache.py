@@ -28,7 +28,10 @@ TABLES_FOLDER = "atmospheres"
 TABLES_SUFFIX = ".tables"
 
 CLOUDS_PREFIX = "clouds-"
-"""Of the names of tables that hold a tile of clouds; all others hold an atmosphere."""
+"""Of the names of tables that hold a tile of clouds."""
+
+CLOUD_LIGHT_PREFIX = "cloudlight-"
+"""Of the names of tables that hold the light of clouds; all others hold an atmosphere."""
 
 KERNEL_SOURCES = (
     "jit", "optics", "transport", "cloud_fields", "scattering", "reference", "sky", "clouds",
@@ -138,9 +141,9 @@ class Usage:
     ----------
     folder : Path
         Where.
-    kernels, atmospheres, cloud_tiles : int
+    kernels, atmospheres, cloud_tiles, cloud_lights : int
         How many files of each kind.
-    kernel_bytes, atmosphere_bytes, cloud_tile_bytes : int
+    kernel_bytes, atmosphere_bytes, cloud_tile_bytes, cloud_light_bytes : int
         Their sizes. [byte]
     """
 
@@ -151,11 +154,14 @@ class Usage:
     atmosphere_bytes: int
     cloud_tiles: int
     cloud_tile_bytes: int
+    cloud_lights: int
+    cloud_light_bytes: int
 
     @property
     def total_bytes(self) -> int:
         """Size of all files. [byte]"""
-        return self.kernel_bytes + self.atmosphere_bytes + self.cloud_tile_bytes
+        of_clouds = self.cloud_tile_bytes + self.cloud_light_bytes
+        return self.kernel_bytes + self.atmosphere_bytes + of_clouds
 
 
 def cache_usage() -> list[Usage]:
@@ -189,16 +195,18 @@ def _usage(folder: Path) -> Usage:
     kernels = _sizes(folder, f"*{KERNEL_SUFFIX}")
     tables = folder / TABLES_FOLDER
     tiles = _sizes(tables, f"{CLOUDS_PREFIX}*{TABLES_SUFFIX}")
-    others = _sizes(tables, f"*{TABLES_SUFFIX}", besides=CLOUDS_PREFIX)
-    counts = [number for sizes in (kernels, others, tiles) for number in (len(sizes), sum(sizes))]
-    return Usage(folder, *counts)
+    lights = _sizes(tables, f"{CLOUD_LIGHT_PREFIX}*{TABLES_SUFFIX}")
+    of_clouds = CLOUDS_PREFIX, CLOUD_LIGHT_PREFIX
+    others = _sizes(tables, f"*{TABLES_SUFFIX}", besides=of_clouds)
+    kinds = kernels, others, tiles, lights
+    return Usage(folder, *(number for sizes in kinds for number in (len(sizes), sum(sizes))))
 
 
-def _sizes(folder: Path, pattern: str, besides: str | None = None) -> list[int]:
-    """Return sizes of files, but of those whose names begin with `besides`. [byte]"""
+def _sizes(folder: Path, pattern: str, besides: tuple[str, ...] = ()) -> list[int]:
+    """Return sizes of files, but of those whose names begin with one of `besides`. [byte]"""
     sizes = []
     for path in folder.glob(pattern):
-        if besides is not None and path.name.startswith(besides):
+        if path.name.startswith(besides):
             continue
         # Another process may have removed it.
         with suppress(FileNotFoundError):

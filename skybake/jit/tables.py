@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from skybake.jit.cache import TABLES_FOLDER, TABLES_SUFFIX, cache_folder
+from skybake.jit.cache import CLOUD_LIGHT_PREFIX, TABLES_FOLDER, TABLES_SUFFIX, cache_folder
 from skybake.jit.digest import add_digest, remove_digest
 from skybake.jit.private_folder import NotPrivateError, PrivateFolder
 
@@ -21,6 +21,9 @@ _HEAD_SIZE = 8
 
 LARGEST_STORE = 1 << 30
 """Size beyond which the tables unused for longest are removed. [byte]"""
+
+LARGEST_LIGHTS = 1 << 29
+"""The same of the light of clouds, which does not push out others: it is large and soon unused."""
 
 
 def read_tables(key: str) -> dict[str, Any] | None:
@@ -38,7 +41,10 @@ def write_tables(key: str, arrays: Mapping[str, Any]) -> None:
         return
     with suppress(OSError):
         folder.write(_file(key), content_from_arrays(key, arrays))
-        _remove_oldest(folder)
+        names = [name for name in folder.names() if name.endswith(TABLES_SUFFIX)]
+        lights = [name for name in names if name.startswith(CLOUD_LIGHT_PREFIX)]
+        _remove_oldest(folder, lights, LARGEST_LIGHTS)
+        _remove_oldest(folder, list(set(names) - set(lights)), LARGEST_STORE)
 
 
 def has_tables(key: str) -> bool:
@@ -108,12 +114,11 @@ def _file(key: str) -> str:
     return f"{key}{TABLES_SUFFIX}"
 
 
-def _remove_oldest(folder: PrivateFolder) -> None:
-    """Keep the folder below `LARGEST_STORE`."""
-    names = [name for name in folder.names() if name.endswith(TABLES_SUFFIX)]
+def _remove_oldest(folder: PrivateFolder, names: list[str], most: int) -> None:
+    """Keep these files below a size. [byte]"""
     last_used = sorted(((*folder.used_at(name), name) for name in names), reverse=True)
     total = 0
     for _, size, name in last_used:
         total += size
-        if total > LARGEST_STORE:
+        if total > most:
             folder.remove(name)

@@ -33,15 +33,24 @@ class Pipeline:
         Threads that do the work.
     keep : int, optional
         Suns and altitudes whose light stays in memory, 6 to 70 MB each.
+    keeps_light_of_clouds : bool, optional
+        Whether the light of clouds is kept on disk, 50 MB and more for each sky: not worth it where
+        each is seen once.
 
     Notes
     -----
     Several threads may use it at once; what two of them need is computed once.
     """
 
-    def __init__(self, *, workers: Workers = ALL_CPUS, keep: int = KEPT) -> None:
+    def __init__(
+        self,
+        *,
+        workers: Workers = ALL_CPUS,
+        keep: int = KEPT,
+        keeps_light_of_clouds: bool = True,
+    ) -> None:
         self.workers = workers
-        self._stages = KeptStages(keep)
+        self._stages = KeptStages(keep, keeps_light_of_clouds=keeps_light_of_clouds)
 
     def scene(
         self, preset: Planet | str | Path, settings: MapSettings, cancel: Event | None = None

@@ -23,9 +23,12 @@ class KeptStages(Stages):
     ----------
     most : int
         Spectral tables to keep, 6 to 70 MB each, and twice as many folded ones, 5 MB each.
+    keeps_light_of_clouds : bool, optional
+        As of `Stages`.
     """
 
-    def __init__(self, most: int) -> None:
+    def __init__(self, most: int, *, keeps_light_of_clouds: bool = True) -> None:
+        super().__init__(keeps_light_of_clouds=keeps_light_of_clouds)
         self._spectral: Kept[TableKey, SpectralTable] = Kept(most)
         self._folded: Kept[tuple[TableKey, bytes], FoldedTable] = Kept(2 * most)
 

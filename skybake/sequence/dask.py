@@ -123,7 +123,7 @@ def finish_on_worker(
 @functools.cache
 def _pipeline() -> Pipeline:
     """Pipeline of this process, whose threads are the cluster's."""
-    return Pipeline(workers=Workers(1))
+    return Pipeline(workers=Workers(1), keeps_light_of_clouds=False)
 
 
 def versions() -> dict[str, str]:

@@ -23,7 +23,9 @@ from skybake.image.light import (
     attributes_from_light,
     light_from_attributes,
     light_of_scene,
+    moon_attributes,
 )
+from skybake.image.moon_figures import ColourAndLight, moon_from_attributes
 from skybake.image.picture import picture_ev, thumbnail
 from skybake.image.picture_settings import PictureSettings
 from skybake.image.picture_texts import preview_texts
@@ -85,6 +87,8 @@ class FrameOutcome:
         Code values of sRGB, shape (row, width, 3), by their widths.
     warnings : tuple of str
         As of `skybake.baking.Baked`; none of a frame that was found.
+    moon : tuple of colour and illuminance, or None
+        Light of its Moon: linear Rec. 709 of luminance 1, and on a plane that faces it. [lx]
     """
 
     number: int
@@ -96,6 +100,7 @@ class FrameOutcome:
     tile_ev: float | None
     thumbnails: Mapping[int, npt.NDArray[np.uint8]]
     warnings: tuple[str, ...] = ()
+    moon: ColourAndLight | None = None
 
 
 def finish_frame(
@@ -148,8 +153,9 @@ def finish_frame(
         warnings = baked.warnings
         # As read from its files if they are found later.
         light = light_from_attributes(attributes_from_light(baked))
+        moon = moon_from_attributes(baked.moonlight)
     else:
-        light, digests = found
+        light, moon, digests = found
         for path in frame.files():
             remove_leftovers(path)
     return FrameOutcome(
@@ -162,6 +168,7 @@ def finish_frame(
         tile_ev=work.tile_ev if TILE_WIDTH in previews.thumbnail_widths else None,
         thumbnails={width: work.thumbnail(width) for width in previews.thumbnail_widths},
         warnings=warnings,
+        moon=moon,
     )
 
 
@@ -214,8 +221,8 @@ class _Work:
             recipe_hash(self._planet, self._frame.settings), {**self._frame.attributes, **decided}
         )
 
-    def found(self) -> tuple[Light, dict[Path, str]] | None:
-        """Return light and digests of the files if they are as this frame's were written."""
+    def found(self) -> tuple[Light, ColourAndLight | None, dict[Path, str]] | None:
+        """Return light, Moon and digests of the files if they are as this frame's were written."""
         frame, settings = self._frame, self._frame.settings
         digests = verified_digests(frame.output, self.claim, frame.files())
         if digests is None:
@@ -227,25 +234,21 @@ class _Work:
         path = map_paths(frame.output, settings)[0]
         # A DDS file has no place for it.
         has_no_texts = path.suffix.lower() == ".dds"
-        light = _light_of_scene(self.scene) if has_no_texts else _light_of_file(path)
-        return None if light is None else (light, digests)
+        attributes = _attributes_of_scene(self.scene) if has_no_texts else _attributes(path)
+        try:
+            light = light_from_attributes(attributes or {})
+        except (KeyError, ValueError):
+            return None
+        return light, moon_from_attributes(attributes or {}), digests
 
     def thumbnail(self, width: int) -> npt.NDArray[np.uint8]:
         ev = self.tile_ev if width == TILE_WIDTH else self.ev
         return thumbnail(self.scene, ev, self._previews.picture, width)
 
 
-def _light_of_scene(scene: Scene) -> Light:
-    """Return the light of a scene as a file would state it."""
-    return light_from_attributes(attributes_from_light(light_of_scene(scene)))
-
-
-def _light_of_file(path: Path) -> Light | None:
-    attributes = _attributes(path)
-    try:
-        return None if attributes is None else light_from_attributes(attributes)
-    except (KeyError, ValueError):
-        return None
+def _attributes_of_scene(scene: Scene) -> Mapping[str, Any]:
+    """Return what a file of a scene would state of its light."""
+    return {**attributes_from_light(light_of_scene(scene)), **moon_attributes(scene)}
 
 
 def _attributes(path: Path) -> dict[str, Any] | None:

@@ -12,12 +12,13 @@ from typing import Any
 
 from skybake.formats.whole_files import replace_when_whole
 from skybake.sequence.frames import format_frames
+from skybake.sidecar.dome_and_sun import DistantLight
 from skybake.version import __version__
 
 SCHEMA = 1
 """Incremented when a key of the JSON changes its meaning or is removed."""
 
-_AXES = {"sun_direction": "xyz", "sun_colour": "rgb"}
+_AXES = {"sun_direction": "xyz", "sun_colour": "rgb", "colour": "rgb"}
 
 
 @dataclass(frozen=True)
@@ -60,6 +61,8 @@ class FrameRecord:
         Of the same files, as hexadecimal digits.
     preview : str or None
         The display-referred picture, as seen from the manifest's folder.
+    moon : DistantLight or None
+        The Moon, of a frame with one.
     """
 
     frame: int
@@ -80,6 +83,7 @@ class FrameRecord:
     files: tuple[str, ...]
     sha256: tuple[str, ...]
     preview: str | None
+    moon: DistantLight | None = None
 
 
 @dataclass(frozen=True)
@@ -143,14 +147,24 @@ def write_manifest(path: Path, header: SequenceHeader, records: Iterable[FrameRe
         "schema": SCHEMA,
         "frames": format_frames(row.frame for row in rows),
         **asdict(header),
-        "records": [asdict(row) for row in rows],
+        "records": [_document(row) for row in rows],
     }
     with replace_when_whole(path) as temporary:
         temporary.write_text(json.dumps(document, indent=2, allow_nan=False) + "\n", "utf-8")
 
 
+def _document(record: FrameRecord) -> dict[str, Any]:
+    """Return a record fit for JSON; one without a Moon does not speak of it."""
+    document = asdict(record)
+    if record.moon is None:
+        del document["moon"]
+    return document
+
+
 def write_csv(path: Path, records: Iterable[FrameRecord]) -> None:
     """Write the records as CSV: a row for each frame, an empty cell for None.
+
+    Columns of the Moon are there if a frame has one.
 
     Vectors take three columns, ``sun_direction_x`` and so on; the six files of a cube
     share one cell, separated by ``;``.
@@ -162,26 +176,30 @@ def write_csv(path: Path, records: Iterable[FrameRecord]) -> None:
     """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(_columns())
-    for record in ascending(records):
-        writer.writerow(_cells(record))
+    rows = ascending(records)
+    has_moon = any(row.moon is not None for row in rows)
+    names = [field.name for field in fields(FrameRecord) if field.name != "moon"]
+    of_moon = [field.name for field in fields(DistantLight)] if has_moon else []
+    writer.writerow([*_columns(names), *(f"moon_{name}" for name in _columns(of_moon))])
+    for row in rows:
+        writer.writerow([*_cells(row, names), *_cells(row.moon, of_moon)])
     with replace_when_whole(path) as temporary:
         temporary.write_bytes(text.getvalue().encode("utf-8", "surrogateescape"))
 
 
-def _columns() -> Iterator[str]:
-    for field in fields(FrameRecord):
-        if field.name in _AXES:
-            yield from (f"{field.name}_{axis}" for axis in _AXES[field.name])
+def _columns(names: Iterable[str]) -> Iterator[str]:
+    for name in names:
+        if name in _AXES:
+            yield from (f"{name}_{axis}" for axis in _AXES[name])
         else:
-            yield field.name
+            yield name
 
 
-def _cells(record: FrameRecord) -> Iterator[str]:
-    for field in fields(FrameRecord):
-        value = getattr(record, field.name)
-        if field.name in _AXES:
-            yield from (f"{component:.9g}" for component in value)
+def _cells(record: FrameRecord | DistantLight | None, names: Iterable[str]) -> Iterator[str]:
+    for name in names:
+        value = getattr(record, name, None)
+        if name in _AXES:
+            yield from (f"{component:.9g}" for component in value) if value else ("", "", "")
         elif isinstance(value, tuple):
             yield ";".join(value)
         elif isinstance(value, float):

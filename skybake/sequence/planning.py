@@ -13,6 +13,7 @@ from skybake.ephemeris.moon import Moon
 from skybake.ephemeris.place import check_planet
 from skybake.errors import ArgumentError, InputError
 from skybake.image.eclipsing_moon import eclipsing_moon
+from skybake.image.moonlight import Moonlight, moonlight_at
 from skybake.image.night import Night, night_at
 from skybake.image.settings import MapSettings
 from skybake.image.sun_distance import sun_distance as distance_of_sun
@@ -130,6 +131,7 @@ def plan_sequence(
             None if drift is None or not planets[world].clouds else drift[i],
             moon,
             settings.night if moment is None else night_at(settings.night, moment),
+            settings.moonlight if moment is None else moonlight_at(settings.moonlight, moment),
         )
         planned.append(
             Frame(
@@ -252,6 +254,7 @@ def _settings_at(
     cloud_time: float | None,
     moon: Moon | None,
     night: Night,
+    moonlight: Moonlight,
 ) -> MapSettings:
     """Return settings with what a frame has of its own; None leaves a value as it is.
 
@@ -268,4 +271,4 @@ def _settings_at(
     if ev is not None:
         encoding = replace(encoding, ev=ev)
     clouds = settings.clouds if cloud_time is None else replace(settings.clouds, time=cloud_time)
-    return MapSettings(view, lighting, encoding, clouds, night)
+    return MapSettings(view, lighting, encoding, clouds, night, moonlight)

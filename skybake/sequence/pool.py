@@ -49,7 +49,8 @@ def local_pool(
     stop = threading.Event()
     threads = ThreadPoolExecutor(workers)
     # Where several frames are baked at once, each keeps to its own thread.
-    pipeline = Pipeline(workers=Workers(None if workers == 1 else 1, stop), keep=workers)
+    threads_of_frame = Workers(None if workers == 1 else 1, stop)
+    pipeline = Pipeline(workers=threads_of_frame, keep=workers, keeps_light_of_clouds=False)
     pending: dict[Future[FrameOutcome], Frame] = {}
 
     def run(frames: Sequence[Frame]) -> Iterator[Done]:

@@ -11,9 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from skybake.constants import ASTRONOMICAL_UNIT
+from skybake.ephemeris.lit_moon import LitMoon
 from skybake.errors import OutputError
 from skybake.formats.targets import check_target
 from skybake.formats.whole_files import replace_when_whole
+from skybake.image.moon_figures import ColourAndLight
 from skybake.optics.spectrum import star_at
 from skybake.sequence.animation import STILL_WIDTH, check_animation, write_animation
 from skybake.sequence.frame import FrameOutcome
@@ -29,7 +31,7 @@ from skybake.sequence.plan import Frame, Plan
 from skybake.sequence.run import SequenceResult
 from skybake.sequence.sheet import TILE_WIDTH, check_sheet, contact_sheet
 from skybake.sequence.thumbnails import Thumbnails
-from skybake.sidecar.dome_and_sun import Common, DomeAndSun
+from skybake.sidecar.dome_and_sun import Common, DistantLight, DomeAndSun
 from skybake.sidecar.light_file import seen_from
 from skybake.sidecar.map_light import disc_diameter, holds_sun
 from skybake.sidecar.usd import check_usd, usd_layer
@@ -202,6 +204,20 @@ def _record(plan: Plan, frame: Frame, outcome: FrameOutcome, folder: Path) -> Fr
         files=tuple(seen_from(folder, outcome.files)),
         sha256=outcome.sha256,
         preview=None if frame.preview is None else seen_from(folder, [frame.preview])[0],
+        moon=_moon(settings.moonlight.moon, outcome.moon),
+    )
+
+
+def _moon(moon: LitMoon | None, light: ColourAndLight | None) -> DistantLight | None:
+    if moon is None or light is None:
+        return None
+    colour, illuminance = light
+    return DistantLight(
+        elevation_deg=degrees(moon.elevation),
+        azimuth_deg=degrees(moon.azimuth),
+        angular_diameter_deg=math.degrees(2.0 * moon.angular_radius),
+        colour=colour,
+        illuminance_lux=illuminance,
     )
 
 

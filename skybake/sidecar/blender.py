@@ -1,18 +1,20 @@
-"""A script by which Blender lights a scene as a map does: its world, and a sun."""
+"""A script by which Blender lights a scene as a map does: its world, a sun, and a Moon."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 from skybake.colour.exposure import luminance_from_ev
+from skybake.image.light import Triple
 from skybake.sidecar.map_light import MapLight
 from skybake.version import __version__
 
 TURN = math.pi / 2.0
 """By which Blender has to turn a map about its Z for the map's -Z to look along its +Y. [rad]"""
 
-WORLD, SUN = "Sky by skybake", "Sun by skybake"
+WORLD, SUN, MOON = "Sky by skybake", "Sun by skybake", "Moon by skybake"
 """Names in Blender."""
 
 _SPACES = {
@@ -25,10 +27,10 @@ _SPACES = {
 }
 
 _SCRIPT = '''\
-"""Light of a sky, by skybake {version}: a map around the scene, and the sun as a lamp.
+"""Light of a sky, by skybake {version}: a map around the scene, and {discs}.
 
 Run it in the text editor of Blender, or as: blender scene.blend --python THIS_FILE
-It replaces the world, and the light named {sun_name}.
+It replaces the world, and {lamps}.
 """
 
 from math import radians
@@ -48,7 +50,7 @@ SUN_STRENGTH = {strength}
 SUN_COLOUR = {colour}
 SUN_ANGLE = {angle}  # [deg]
 SUN_IS_IN_MAP = {is_in_map}
-
+{moon}
 # That a camera would choose, for Exposure in the render properties. [stop]
 SUGGESTED_EXPOSURE = {exposure}
 
@@ -82,24 +84,52 @@ def light_by_map(scene, file):
     links.new(background.outputs["Background"], output.inputs["Surface"])
 
 
-def light_by_sun(scene):
-    former = bpy.data.lights.get({sun_name})
+def light_by_disc(scene, name, direction, strength, colour, angle, is_in_map):
+    former = bpy.data.lights.get(name)
     if former is not None:
         bpy.data.lights.remove(former)
-    if SUN_IS_IN_MAP:
+    if is_in_map:
         return
-    light = bpy.data.lights.new({sun_name}, "SUN")
-    light.energy = SUN_STRENGTH
-    light.color = SUN_COLOUR
-    light.angle = radians(SUN_ANGLE)
-    sun = bpy.data.objects.new({sun_name}, light)
-    sun.rotation_euler = Vector(SUN_DIRECTION).to_track_quat("Z", "Y").to_euler()
-    scene.collection.objects.link(sun)
+    light = bpy.data.lights.new(name, "SUN")
+    light.energy = strength
+    light.color = colour
+    light.angle = radians(angle)
+    lamp = bpy.data.objects.new(name, light)
+    lamp.rotation_euler = Vector(direction).to_track_quat("Z", "Y").to_euler()
+    scene.collection.objects.link(lamp)
 
 
 light_by_map(bpy.context.scene, map_file())
-light_by_sun(bpy.context.scene)
-'''
+light_by_disc(
+    bpy.context.scene,
+    {sun_name},
+    SUN_DIRECTION,
+    SUN_STRENGTH,
+    SUN_COLOUR,
+    SUN_ANGLE,
+    SUN_IS_IN_MAP,
+)
+{light_by_moon}'''
+
+_MOON = """
+MOON_DIRECTION = {direction}
+MOON_STRENGTH = {strength}
+MOON_COLOUR = {colour}
+MOON_ANGLE = {angle}  # [deg]
+MOON_IS_IN_MAP = {is_in_map}
+"""
+
+_LIGHT_BY_MOON = """\
+light_by_disc(
+    bpy.context.scene,
+    {moon_name},
+    MOON_DIRECTION,
+    MOON_STRENGTH,
+    MOON_COLOUR,
+    MOON_ANGLE,
+    MOON_IS_IN_MAP,
+)
+"""
 
 
 def blender_script(light: MapLight, files: Sequence[str]) -> str:
@@ -117,30 +147,75 @@ def blender_script(light: MapLight, files: Sequence[str]) -> str:
     """
     # A map that is turned for a program keeps its north, one that a user has turned does not.
     turn = math.remainder(TURN + light.target_turn, 2.0 * math.pi)
-    # A lamp's colour is at most 1 in Blender's interface.
-    strongest = max(light.sun_colour)
-    strength = light.direct_normal_illuminance / light.white_luminance
     exposure = math.log2(light.white_luminance / luminance_from_ev(light.exposure_ev))
+    sun = _lamp(
+        light,
+        turn,
+        light.sun_direction,
+        light.sun_colour,
+        light.direct_normal_illuminance,
+        light.sun_angular_diameter,
+        light.sun_is_in_map,
+    )
+    moon = _moon(light, turn)
     return _SCRIPT.format(
+        **sun,
         version=__version__,
         preset=ascii(light.preset)[1:-1],
         file=ascii(files[0]),
         space=ascii(_SPACES[light.colorspace]),
         turn=_number(math.degrees(turn)),
-        direction=_numbers(_in_blender(light, turn)),
-        strength=_number(strongest * strength),
-        colour=_numbers([component / strongest for component in light.sun_colour]),
-        angle=_number(math.degrees(light.sun_angular_diameter)),
-        is_in_map=light.sun_is_in_map,
         exposure=f"{exposure:.2f}",
         world_name=ascii(WORLD),
         sun_name=ascii(SUN),
+        discs="sun and Moon as lamps" if moon else "the sun as a lamp",
+        lamps=f"the lights named {SUN!a} and {MOON!a}" if moon else f"the light named {SUN!a}",
+        moon=moon,
+        light_by_moon=_LIGHT_BY_MOON.format(moon_name=ascii(MOON)) if moon else "",
     )
 
 
-def _in_blender(light: MapLight, turn: float) -> tuple[float, float, float]:
-    """Direction toward the sun: an unturned map has its middle, +Z, along Blender's +X."""
-    x, up, z = light.sun_direction
+def _moon(light: MapLight, turn: float) -> str:
+    """Return the lines that describe the Moon, none without one."""
+    moon = light.moon
+    if moon is None:
+        return ""
+    lamp = _lamp(
+        light,
+        turn,
+        moon.direction,
+        moon.colour,
+        moon.normal_illuminance,
+        moon.angular_diameter,
+        light.sun_is_in_map,
+    )
+    return _MOON.format(**lamp)
+
+
+def _lamp(
+    light: MapLight,
+    turn: float,
+    direction: Triple,
+    colour: Triple,
+    illuminance: float,
+    angular_diameter: float,
+    is_in_map: bool,
+) -> dict[str, Any]:
+    """Return what a lamp of Blender is made of, as text."""
+    # A lamp's colour is at most 1 in Blender's interface.
+    strongest = max(colour)
+    return {
+        "direction": _numbers(_in_blender(direction, turn)),
+        "strength": _number(strongest * illuminance / light.white_luminance),
+        "colour": _numbers([component / strongest for component in colour]),
+        "angle": _number(math.degrees(angular_diameter)),
+        "is_in_map": is_in_map,
+    }
+
+
+def _in_blender(direction: Triple, turn: float) -> Triple:
+    """Direction toward a light: an unturned map has its middle, +Z, along Blender's +X."""
+    x, up, z = direction
     cosine, sine = math.cos(turn), math.sin(turn)
     return cosine * z + sine * x, cosine * x - sine * z, up
 

@@ -36,6 +36,29 @@ class Common:
 
 
 @dataclass(frozen=True, kw_only=True)
+class DistantLight:
+    """A disc as a light of its own: the sun or the Moon.
+
+    Attributes
+    ----------
+    elevation_deg, azimuth_deg : float
+        Of its centre, and its compass bearing. [deg]
+    angular_diameter_deg : float
+        [deg]
+    colour : tuple of 3 float
+        Linear Rec. 709 of luminance 1; any if it gives no light.
+    illuminance_lux : float
+        On a plane that faces it. [lx]
+    """
+
+    elevation_deg: float
+    azimuth_deg: float
+    angular_diameter_deg: float
+    colour: tuple[float, float, float]
+    illuminance_lux: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class DomeAndSun:
     """The lights of one map.
 
@@ -55,6 +78,8 @@ class DomeAndSun:
         Of the sun's light, linear Rec. 709 of luminance 1; any if it gives none.
     sun_illuminance_lux : float
         On a plane that faces the sun. [lx]
+    moon : DistantLight or None
+        The Moon, if it is a light of the map.
     """
 
     file: str
@@ -65,6 +90,18 @@ class DomeAndSun:
     sun_angular_diameter_deg: float
     sun_colour: tuple[float, float, float]
     sun_illuminance_lux: float
+    moon: DistantLight | None = None
+
+    @property
+    def sun(self) -> DistantLight:
+        """The sun."""
+        return DistantLight(
+            elevation_deg=self.sun_elevation_deg,
+            azimuth_deg=self.sun_azimuth_deg,
+            angular_diameter_deg=self.sun_angular_diameter_deg,
+            colour=self.sun_colour,
+            illuminance_lux=self.sun_illuminance_lux,
+        )
 
 
 def check_dome(path: Path, dome: str, projection: Projection) -> None:

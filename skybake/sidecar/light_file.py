@@ -11,9 +11,10 @@ from skybake.errors import InputError
 from skybake.formats.spec import Attribute
 from skybake.formats.targets import check_target, faults_of
 from skybake.formats.whole_files import WholeFiles
+from skybake.image.moon_figures import MoonFigures
 from skybake.projection.chart import Projection
 from skybake.sidecar.blender import blender_script
-from skybake.sidecar.dome_and_sun import Common, DomeAndSun, check_dome
+from skybake.sidecar.dome_and_sun import Common, DistantLight, DomeAndSun, check_dome
 from skybake.sidecar.light_json import light_json
 from skybake.sidecar.map_light import MapLight
 from skybake.sidecar.usd import check_usd, usd_layer
@@ -124,5 +125,16 @@ def _usd(path: Path, light: MapLight, names: Sequence[str]) -> str:
         sun_angular_diameter_deg=math.degrees(light.sun_angular_diameter),
         sun_colour=light.sun_colour,
         sun_illuminance_lux=light.direct_normal_illuminance,
+        moon=None if light.moon is None else _moon(light.moon),
     )
     return usd_layer(path, common, [row])
+
+
+def _moon(moon: MoonFigures) -> DistantLight:
+    return DistantLight(
+        elevation_deg=degrees(moon.elevation),
+        azimuth_deg=degrees(moon.azimuth),
+        angular_diameter_deg=math.degrees(moon.angular_diameter),
+        colour=moon.colour,
+        illuminance_lux=moon.normal_illuminance,
+    )

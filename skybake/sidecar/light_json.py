@@ -5,13 +5,32 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Sequence
+from typing import Any
 
+from skybake.image.moon_figures import MoonFigures
 from skybake.sidecar.map_light import MapLight
 from skybake.units import degrees
 from skybake.version import __version__
 
 SCHEMA = 1
 """Incremented when a key changes its meaning or is removed."""
+
+
+def moon_document(moon: MoonFigures) -> dict[str, Any]:
+    """Return the light of a Moon, fit for JSON."""
+    return {
+        "is_in_map": moon.is_in_map,
+        "direction": list(moon.direction),
+        "azimuth_deg": degrees(moon.azimuth),
+        "elevation_deg": degrees(moon.elevation),
+        "angular_diameter_deg": math.degrees(moon.angular_diameter),
+        "phase_angle_deg": math.degrees(moon.phase_angle),
+        "illuminated_fraction": moon.illuminated_fraction,
+        "illuminance_lux": moon.normal_illuminance,
+        "horizontal_illuminance_lux": moon.illuminance,
+        "colour": list(moon.colour_in_map),
+        "eclipsed": moon.eclipsed,
+    }
 
 
 def light_json(light: MapLight, files: Sequence[str], time: str | None = None) -> str:
@@ -54,6 +73,7 @@ def light_json(light: MapLight, files: Sequence[str], time: str | None = None) -
             "colour_temperature_k": light.sun_temperature,
             "irradiance": light.sun_irradiance,
         },
+        "moon": None if light.moon is None else moon_document(light.moon),
         "sky": {"horizontal_illuminance_lux": light.sky_illuminance},
         "exposure_ev": light.exposure_ev,
     }

@@ -11,6 +11,7 @@ from skybake.colour.temperature import correlated_temperature
 from skybake.constants import ASTRONOMICAL_UNIT
 from skybake.image.light import Light, Triple, light_of_scene
 from skybake.image.meter import scene_ev
+from skybake.image.moon_figures import MoonFigures, moon_figures
 from skybake.image.scene import Scene
 from skybake.image.settings import Lighting, MapSettings
 from skybake.optics.spectrum import star_at
@@ -54,6 +55,8 @@ class MapLight(Light):
         Correlated colour temperature, see `correlated_temperature`. [K]
     exposure_ev : float
         Exposure value at ISO 100 that a camera would choose for the sky.
+    moon : MoonFigures or None
+        Of a map with a Moon.
     """
 
     preset: str
@@ -72,6 +75,7 @@ class MapLight(Light):
     sun_colour_in_map: Triple
     sun_temperature: float | None
     exposure_ev: float
+    moon: MoonFigures | None = None
 
     @property
     def sun_is_in_map(self) -> bool:
@@ -121,6 +125,7 @@ def map_light(scene: Scene, light: Light | None = None) -> MapLight:
         sun_colour_in_map=_colour(scene, normal),
         sun_temperature=correlated_temperature(normal),
         exposure_ev=scene_ev(scene),
+        moon=None if scene.moonlit is None else moon_figures(scene, scene.moonlit),
     )
 
 

@@ -1,6 +1,6 @@
-"""Maps as lights of USD: a dome with a map as texture, and the sun as a distant light.
+"""Maps as lights of USD: a dome with a map as texture, and sun and Moon as distant lights.
 
-Both share one unit, the maps' white: the dome's texel of 1 and the sun's intensity
+All share one unit, the maps' white: the dome's texel of 1 and the sun's intensity
 of 1 stand for `DomeAndSun.white_luminance_cd_m2`, in cd/m2 and in lux. USD orients
 lat-long textures as OpenEXR does (UsdLuxDomeLight's documentation), and so do our maps,
 so that the dome needs no rotation.
@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from skybake.colour.space import find_colour_space
@@ -17,11 +18,11 @@ from skybake.errors import InputError
 from skybake.formats.targets import check_target
 from skybake.formats.text import is_plain_line
 from skybake.projection.chart import Projection
-from skybake.sidecar.dome_and_sun import Common, DomeAndSun, check_dome
+from skybake.sidecar.dome_and_sun import Common, DistantLight, DomeAndSun, check_dome
 from skybake.version import __version__
 
-_SUN_IS_IN_MAPS = (
-    "Not active, because the maps on the dome hold the sun's disc already. To have it sampled as "
+_IS_IN_MAPS = (
+    "Not active, because the maps on the dome hold the {}'s disc already. To have it sampled as "
     "a light instead, bake the maps without the disc."
 )
 
@@ -71,7 +72,11 @@ def usd_layer(path: Path, common: Common, rows: Sequence[DomeAndSun]) -> str:
     InputError
         If USD cannot hold the name of a map.
     """
-    lines = [*_layer(common, rows), *_dome(path, common, rows), "", *_sun(common, rows), "}"]
+    lines = [*_layer(common, rows), *_dome(path, common, rows)]
+    lines += ["", *_distant(common, rows, "Sun", lambda row: row.sun)]
+    if any(row.moon is not None for row in rows):
+        lines += ["", *_distant(common, rows, "Moon", _moon_of)]
+    lines.append("}")
     return "\n".join(lines) + "\n"
 
 
@@ -124,47 +129,61 @@ def _dome(path: Path, common: Common, rows: Sequence[DomeAndSun]) -> Iterator[st
     yield "    }"
 
 
-def _sun(common: Common, rows: Sequence[DomeAndSun]) -> Iterator[str]:
-    yield '    def DistantLight "Sun"'
+def _distant(
+    common: Common,
+    rows: Sequence[DomeAndSun],
+    name: str,
+    light: Callable[[DomeAndSun], DistantLight],
+) -> Iterator[str]:
+    """Define a disc's light, which is off where the maps hold the disc."""
+    yield f'    def DistantLight "{name}"'
     if common.sun_is_in_maps:
         yield "    ("
         yield "        active = false"
-        yield f"        doc = {_quoted(_SUN_IS_IN_MAPS)}"
+        yield f"        doc = {_quoted(_IS_IN_MAPS.format(name.lower()))}"
         yield "    )"
     yield "    {"
-    yield from _angle(rows)
+    yield from _angle(rows, light)
     yield from _samples(
         "        color3f inputs:color",
         rows,
-        lambda row: _triple(*_colour_of_light(row)),
+        lambda row: _triple(*_colour_of(light(row))),
         colour_space="lin_rec709_scene",
     )
     yield from _samples(
         "        float inputs:intensity",
         rows,
-        lambda row: f"{row.sun_illuminance_lux / row.white_luminance_cd_m2:.9g}",
+        lambda row: f"{light(row).illuminance_lux / row.white_luminance_cd_m2:.9g}",
     )
     yield "        bool inputs:normalize = 1"
-    bearing = dict(zip((row.frame for row in rows), _steady_bearings(common, rows), strict=True))
+    steady = _steady_bearings(common, [light(row) for row in rows])
+    bearing = dict(zip((row.frame for row in rows), steady, strict=True))
     # The light comes from +Z of its own axes: tilted up, then turned to the bearing.
     yield from _samples(
         "        float3 xformOp:rotateXYZ",
         rows,
-        lambda row: _triple(-row.sun_elevation_deg, 180.0 - bearing[row.frame], 0.0),
+        lambda row: _triple(-light(row).elevation_deg, 180.0 - bearing[row.frame], 0.0),
     )
     yield '        uniform token[] xformOpOrder = ["xformOp:rotateXYZ"]'
     yield "    }"
 
 
-def _angle(rows: Sequence[DomeAndSun]) -> Iterator[str]:
-    """Size of the sun's disc, which changes where its distance follows the date."""
-    angles = [f"{row.sun_angular_diameter_deg:.9g}" for row in rows]
+def _angle(
+    rows: Sequence[DomeAndSun], light: Callable[[DomeAndSun], DistantLight]
+) -> Iterator[str]:
+    """Size of a disc, which changes where its distance follows the date."""
+    angles = [f"{light(row).angular_diameter_deg:.9g}" for row in rows]
     if len(set(angles)) == 1:
         yield f"        float inputs:angle = {angles[0]}"
     else:
         yield from _samples(
-            "        float inputs:angle", rows, lambda row: f"{row.sun_angular_diameter_deg:.9g}"
+            "        float inputs:angle", rows, lambda row: f"{light(row).angular_diameter_deg:.9g}"
         )
+
+
+def _moon_of(row: DomeAndSun) -> DistantLight:
+    """Return the Moon of a map, or one without light where another map of the rows has it."""
+    return row.moon or replace(row.sun, illuminance_lux=0.0)
 
 
 def _samples(
@@ -190,15 +209,15 @@ def _samples(
         yield f"{indent}}}"
 
 
-def _colour_of_light(row: DomeAndSun) -> tuple[float, float, float]:
-    return row.sun_colour if row.sun_illuminance_lux > 0.0 else (1.0, 1.0, 1.0)
+def _colour_of(light: DistantLight) -> tuple[float, float, float]:
+    return light.colour if light.illuminance_lux > 0.0 else (1.0, 1.0, 1.0)
 
 
-def _steady_bearings(common: Common, rows: Sequence[DomeAndSun]) -> Iterator[float]:
-    """Bearings of the sun on the maps, without a jump at north that would be interpolated. [deg]"""
-    bearing = rows[0].sun_azimuth_deg
-    for row in rows:
-        bearing += math.remainder(row.sun_azimuth_deg - bearing, 360.0)
+def _steady_bearings(common: Common, lights: Sequence[DistantLight]) -> Iterator[float]:
+    """Bearings on the maps, without a jump at north that would be interpolated. [deg]"""
+    bearing = lights[0].azimuth_deg
+    for light in lights:
+        bearing += math.remainder(light.azimuth_deg - bearing, 360.0)
         yield bearing - common.rotation_deg
 
 

@@ -27,8 +27,11 @@ def test_info_tells_what_each_version_has(tmp_path, cold):
     (old / "a.kernel").write_bytes(bytes(1000))
     (old / "atmospheres" / "b.tables").write_bytes(bytes(2_000_000))
     (old / "atmospheres" / "clouds-c.tables").write_bytes(bytes(3_000_000))
+    (old / "atmospheres" / "cloudlight-d.tables").write_bytes(bytes(4_000_000))
     _, text, _ = run("cache", "info", env=cold)
-    assert "kernels-0123: 1 kernels 0.0 MB, 1 atmospheres 2.0 MB, 1 tiles of clouds 3.0 MB" in text
+    (line,) = (line for line in text.splitlines() if line.startswith("kernels-0123: "))
+    assert "1 kernels 0.0 MB, 1 atmospheres 2.0 MB, 1 tiles of clouds 3.0 MB, " in line
+    assert line.endswith("light of 1 skies with clouds 4.0 MB")
     assert "(this version)" not in text
     found = info(cold)
     assert found["folder"] == str(tmp_path / "cache")
@@ -42,6 +45,8 @@ def test_info_tells_what_each_version_has(tmp_path, cold):
         "atmosphere_bytes": 2_000_000,
         "cloud_tiles": 1,
         "cloud_tile_bytes": 3_000_000,
+        "cloud_lights": 1,
+        "cloud_light_bytes": 4_000_000,
     }
 
 

@@ -9,7 +9,7 @@ from skybake.cli import main
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ("--moon 1", "must be AZIMUTH,ELEVATION[,DIAMETER[,DISTANCE]]"),
+        ("--moon 1", "must be include, exclude, only or AZIMUTH,ELEVATION[,DIAMETER[,DISTANCE]]"),
         ("--moon 180,95", "must be from -90deg to 90deg, got 95"),
         ("--moon 180,40,0", "moon diameter: must be greater than 0deg"),
         ("--moon 180,40,1deg,-5km", "moon distance: must be greater than 0 km, got -5 km"),

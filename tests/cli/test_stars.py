@@ -82,7 +82,11 @@ def test_parts_of_a_map_with_stars_add_up(folder):
 
 @pytest.mark.parametrize(
     "arguments",
-    [("--sun", "30deg"), ("--sun", "-30deg"), (*NIGHT[:4], "--time", "2026-01-15T10:00Z")],
+    [
+        ("--sun", "30deg"),
+        ("--sun", "-30deg"),
+        (*NIGHT[:4], "--time", "2026-01-15T10:00Z", "--moon", "exclude"),
+    ],
 )
 def test_without_stars_nothing_of_them_is_imported(folder, arguments):
     status, output, errors = run(

@@ -12,7 +12,9 @@ from pxr import Gf, Usd, UsdGeom, UsdLux
 from skybake.baking import bake
 from skybake.colour.space import COLOUR_SPACES, find_colour_space, rgb_from_xyz
 from skybake.colour.temperature import correlated_temperature
+from skybake.ephemeris.lit_moon import moon_by_hand
 from skybake.errors import InputError, OutputError
+from skybake.image.moonlight import Moonlight
 from skybake.image.settings import map_settings
 from tests.baking.maps import pixels
 
@@ -282,3 +284,58 @@ def test_a_dome_is_refused_a_map_whose_first_and_last_rows_are_the_poles(tmp_pat
     ):
         bake("earth", tmp_path / "a.exr", settings, lights=[tmp_path / f"a{suffix}"])
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.fixture(scope="module")
+def moonlit(tmp_path_factory):
+    """A map at the first quarter without discs, and all files of lights."""
+    folder = tmp_path_factory.mktemp("moonlit")
+    moon = moon_by_hand(math.radians(130.0), math.radians(35.0), math.radians(90.0), 4.2, -0.4)
+    settings = map_settings(
+        size=64,
+        sun_elevation=-0.4,
+        sun_azimuth=4.2,
+        sun_disc="exclude",
+        rotation=math.radians(25.0),
+        units="nits",
+        moonlight=Moonlight(moon),
+    )
+    names = [folder / name for name in ("sky.usda", "sky.light.json", "sky.py")]
+    bake("earth", folder / "sky.exr", settings, lights=names)
+    return folder
+
+
+def test_the_moon_is_a_second_light_in_every_file(moonlit):
+    told = read_json(moonlit)["moon"]
+    flat = math.cos(math.radians(35.0))
+    bearing = math.radians(130.0 - 25.0)
+    toward = flat * math.sin(bearing), math.sin(math.radians(35.0)), -flat * math.cos(bearing)
+    assert told["direction"] == pytest.approx(toward, abs=1e-6)
+    assert (told["azimuth_deg"], told["elevation_deg"]) == (130.0, 35.0)
+    assert told["angular_diameter_deg"] == pytest.approx(0.518, abs=1e-3)
+    assert told["phase_angle_deg"] == pytest.approx(90.0)
+    assert 0.010 < told["illuminance_lux"] < 0.03
+    assert (told["is_in_map"], told["eclipsed"]) == (False, 0.0)
+
+    stage = Usd.Stage.Open(str(moonlit / "sky.usda"))
+    moon = UsdLux.DistantLight(stage.GetPrimAtPath("/World/Moon"))
+    assert moon.GetPrim().IsActive()
+    assert moon.GetIntensityAttr().Get() == pytest.approx(told["illuminance_lux"], rel=1e-5)
+    assert moon.GetAngleAttr().Get() == pytest.approx(told["angular_diameter_deg"], rel=1e-5)
+    to_world = UsdGeom.Xformable(moon).ComputeLocalToWorldTransform(Usd.TimeCode.Default())
+    assert tuple(to_world.TransformDir(Gf.Vec3d(0.0, 0.0, 1.0))) == pytest.approx(toward, abs=1e-6)
+
+    script = values_of((moonlit / "sky.py").read_text("utf-8"))
+    x, y, z = toward
+    assert script["MOON_DIRECTION"] == pytest.approx((x, -z, y), abs=1e-6)
+    assert script["MOON_IS_IN_MAP"] is False
+    assert script["MOON_STRENGTH"] == pytest.approx(
+        told["illuminance_lux"] * max(told["colour"]), rel=1e-4
+    )
+    assert "MOON_ANGLE,\n" in (moonlit / "sky.py").read_text("utf-8")
+
+
+def test_a_map_without_a_moon_has_no_light_for_it(folder):
+    assert read_json(folder)["moon"] is None
+    assert not Usd.Stage.Open(str(folder / "sky.usda")).GetPrimAtPath("/World/Moon")
+    assert "MOON" not in (folder / "sky.py").read_text("utf-8")

@@ -41,8 +41,8 @@ aim_option = click.option(
     metavar="AT",
     type=aim,
     show_default="horizon",
-    help="What is in the middle: sun; horizon or limb, with a comma and a bearing, or else toward "
-    "the sun; planet, all of it from afar; or AZIMUTH,ELEVATION.",
+    help="What is in the middle: sun; moon; horizon or limb, with a comma and a bearing, or else "
+    "toward the sun; planet, all of it from afar; or AZIMUTH,ELEVATION.",
 )
 
 camera_option = click.option(

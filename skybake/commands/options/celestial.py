@@ -85,23 +85,56 @@ def sun_distance(text: str) -> float | str:
     return distance
 
 
-def moon(text: str) -> Moon:
+MOONS = ("include", "exclude", "only")
+"""As of `skybake.image.moonlight`."""
+
+
+def moon(text: str) -> Moon | str:
+    """Read one of `MOONS`, or a moon in front of the sun as of `eclipsing_moon`."""
+    if text in MOONS:
+        return text
+    return _eclipsing_moon(text, "include, exclude, only or ")
+
+
+def eclipsing_moon(text: str) -> Moon:
     """Read ``195deg,40deg``, with a diameter as ``0.52deg`` and a distance as ``384400km``."""
+    return _eclipsing_moon(text, "")
+
+
+def moon_phase(text: str) -> float:
+    """Read a phase angle, or a name of `skybake.ephemeris.lit_moon.PHASES`. [rad]"""
+    from skybake.ephemeris.lit_moon import PHASES
+
+    if text in PHASES:
+        return math.radians(PHASES[text])
+    try:
+        angle = parse_angle(text)
+    except InputError:
+        angle = math.nan
+    if not 0.0 <= angle <= math.pi + 1e-9:
+        raise click.BadParameter(
+            f"must be from 0deg to 180deg or one of {', '.join(PHASES)}, got {text!r}"
+        )
+    return angle
+
+
+def _eclipsing_moon(text: str, others: str) -> Moon:
     from skybake.ephemeris.moon import Moon
 
     parts = text.split(",")
     if not 2 <= len(parts) <= 4:
         raise click.BadParameter(
-            f"must be AZIMUTH,ELEVATION[,DIAMETER[,DISTANCE]] such as 180deg,40deg, got {text!r}"
+            f"must be {others}AZIMUTH,ELEVATION[,DIAMETER[,DISTANCE]] such as 180deg,40deg, "
+            f"got {text!r}"
         )
-    others = {}
+    sizes: dict[str, float] = {}
     if len(parts) > 2:
-        others["diameter"] = parsed(parts[2], parse_angle)
+        sizes["diameter"] = parsed(parts[2], parse_angle)
     if len(parts) > 3:
         is_far = parts[3].strip() == "inf"
-        others["distance"] = math.inf if is_far else length(parts[3])
+        sizes["distance"] = math.inf if is_far else length(parts[3])
     try:
-        return Moon(bearing(parts[0]), elevation(parts[1]), **others)
+        return Moon(bearing(parts[0]), elevation(parts[1]), **sizes)
     except InputError as error:
         raise click.BadParameter(str(error)) from error
 

@@ -56,15 +56,24 @@ def sun_distance_needs(options: Mapping[str, Any], *, is_timed: bool, time: str)
     return {"sun_distance": (is_timed or options["sun_distance"] != "date", f"date needs {time}")}
 
 
-def moon_options(times: str) -> Decorator:
-    """Return ``--moon`` and ``--eclipse``; `times` is the option or options of a time."""
+def moon_options(times: str, *, is_light: bool = True) -> Decorator:
+    """Return ``--moon`` and ``--eclipse``; `times` is the option or options of a time.
+
+    With `is_light`, words of ``--moon`` say whether the Moon shines.
+    """
+    place = "AZIMUTH,ELEVATION[,DIAMETER[,DISTANCE]]"
+    front = (
+        "in front of the sun; by default as large and as far as Earth's on average, "
+        "0.518deg and 384400km. A distance of inf is one without parallax."
+    )
+    words = f"Whether the map holds the Moon and its light, or no other; or a moon {front}"
     return options_together(
         click.option(
             "--moon",
-            metavar="AZIMUTH,ELEVATION[,DIAMETER[,DISTANCE]]",
-            type=celestial.moon,
-            help="Moon in front of the sun; by default as large and as far as Earth's on average, "
-            "0.518deg and 384400km. A distance of inf is one without parallax.",
+            metavar=f"include|exclude|only|{place}" if is_light else place,
+            type=celestial.moon if is_light else celestial.eclipsing_moon,
+            show_default=f"include, with {times}" if is_light else None,
+            help=words if is_light else f"Moon {front}",
         ),
         click.option(
             "--eclipse",
@@ -78,8 +87,15 @@ def moon_options(times: str) -> Decorator:
 
 def moon_needs(options: Mapping[str, Any], *, is_timed: bool, time: str) -> Needs:
     """Return what `moon_options` need: `time`, the option or options of a time."""
-    problem = "cannot be combined with --moon" if options["moon"] else f"needs {time}"
-    return {"eclipse": (is_timed and not options["moon"], problem)}
+    is_in_front = moon_by_place(options) is not None
+    problem = "cannot be combined with --moon" if is_in_front else f"needs {time}"
+    return {"eclipse": (is_timed and not is_in_front, problem)}
+
+
+def moon_by_place(options: Mapping[str, Any]) -> Moon | None:
+    """Return the moon that ``--moon`` puts in front of the sun, if it is not a word."""
+    moon: Moon | str | None = options["moon"]
+    return None if isinstance(moon, str) else moon
 
 
 def moon_from_options(
@@ -101,8 +117,8 @@ def moon_from_options(
     sun_distance : float or None
         As of `skybake.image.settings.Lighting`. [au]
     """
-    if options["moon"] is not None or options["eclipse"] == "off":
-        moon: Moon | None = options["moon"]
+    moon = moon_by_place(options)
+    if moon is not None or options["eclipse"] == "off":
         return moon
     from skybake.image.eclipsing_moon import eclipsing_moon
 

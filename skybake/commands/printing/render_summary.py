@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from skybake.baking import Baked
     from skybake.ephemeris.moment import Moment
     from skybake.image.settings import MapSettings
+    from skybake.sidecar.map_light import MapLight
 
 
 def print_summary(baked: Baked, settings: MapSettings, seconds: float) -> None:
@@ -38,6 +39,8 @@ def print_summary(baked: Baked, settings: MapSettings, seconds: float) -> None:
     if baked.from_below is not None:
         by_map, by_ground = baked.from_below
         click.echo(f"from below {by_map:.5g} lx, instead of {by_ground:.5g} lx by the ground")
+    if baked.moonlight:
+        click.echo(_moon_line(baked))
     if baked.star_illuminance is not None:
         click.echo(f"stars {baked.star_illuminance:.3g} lx on the horizontal")
     if baked.clamped:
@@ -99,6 +102,7 @@ def result(
         "sky_illuminance_lux": baked.sky_illuminance,
         "eclipse": _eclipse(baked),
         "star_illuminance_lux": baked.star_illuminance,
+        "moon": _moon(light),
         "white_luminance_cd_m2": baked.white_luminance,
         "exposure_ev": light.exposure_ev,
         "projection": light.projection,
@@ -114,6 +118,25 @@ def result(
         "preview_white": None if baked.preview_white is None else list(baked.preview_white),
         "seconds": round(seconds, 3),
     }
+
+
+def _moon(light: MapLight) -> dict[str, Any] | None:
+    if light.moon is None:
+        return None
+    from skybake.sidecar.light_json import moon_document
+
+    return moon_document(light.moon)
+
+
+def _moon_line(baked: Baked) -> str:
+    told = baked.moonlight
+    eclipsed = told.get("skybake:moonEclipsed")
+    dimmed = "" if eclipsed is None else f", {eclipsed:.3%} of it in the shadow of Earth"
+    return (
+        f"moon {told['skybake:moonIlluminance']:.3g} lx on the horizontal "
+        f"({told['skybake:moonNormalIlluminance']:.3g} lx facing it), "
+        f"{told['skybake:moonIlluminatedFraction']:.0%} lit{dimmed}"
+    )
 
 
 def _eclipse(baked: Baked) -> dict[str, Any] | None:

@@ -1,0 +1,113 @@
+"""Scenes of what knobs ask for, kept while they are looked at."""
+
+from __future__ import annotations
+
+import json
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import replace
+from threading import Event, Lock
+
+from skybake.image.aim import Aim, Lookout, aimed
+from skybake.image.scene import Scene
+from skybake.image.settings import Encoding, MapSettings, View
+from skybake.pipeline import Pipeline
+from skybake.projection import Equirect, Perspective
+from skybake.studio.reader import Request
+
+KEPT_SCENES = 4
+KEPT_SUNS = 4
+
+SOLVING, TRACING, CLOUDS = "solving atmosphere", "tracing light", "solving clouds"
+"""Stages that take long."""
+
+FAR = 3.0
+"""Altitude from which all of a planet is seen, in its radii."""
+
+Stage = Callable[[str, float | None], None]
+"""Called with the stage that begins, and the share of it that is done, if it is known."""
+
+
+class Scenes:
+    """Makes scenes on one pipeline, and keeps the last of them with what they have computed."""
+
+    def __init__(self) -> None:
+        self._pipeline = Pipeline(keep=KEPT_SUNS)
+        self._kept: OrderedDict[str, Scene] = OrderedDict()
+        self._lock = Lock()
+
+    def scene(self, request: Request, settings: MapSettings, cancel: Event) -> Scene:
+        """Return a scene, which may be that of a request before.
+
+        Parameters
+        ----------
+        request : Request
+            The world.
+        settings : MapSettings
+            As `equirect_settings` or `planet_settings` return them.
+        cancel : threading.Event
+            Stops the work of a new scene.
+        """
+        with self._lock:
+            kept = self._kept.get(_key(request, settings))
+            if kept is not None:
+                self._kept.move_to_end(_key(request, settings))
+                return kept
+        return self._pipeline.scene(request.planet, settings, cancel)
+
+    def keep(self, request: Request, scene: Scene) -> None:
+        """Keep a scene whose pixels have all been computed: nobody stops it any more."""
+        with self._lock:
+            self._kept[_key(request, scene.settings)] = scene
+            while len(self._kept) > KEPT_SCENES:
+                self._kept.popitem(last=False)
+
+    def map_scene(self, request: Request, cancel: Event) -> Scene:
+        """Return the scene of the map itself, on the same pipeline."""
+        return self._pipeline.scene(request.planet, request.settings, cancel)
+
+
+def equirect_settings(request: Request) -> MapSettings:
+    """Return settings of the whole sky as knobs ask for it, whatever kind of map it becomes."""
+    return _seen(request, replace(request.settings.view, projection=Equirect(), rotation=0.0))
+
+
+def planet_settings(request: Request, size: tuple[int, int]) -> MapSettings:
+    """Return settings of the planet as it is seen from afar."""
+    lighting, asked = request.settings.lighting, request.settings.view
+    altitude = max(asked.altitude, FAR * request.planet.radius)
+    where = Lookout(request.planet, altitude, lighting.sun_azimuth, lighting.sun_elevation)
+    picture: Perspective = aimed(Aim("planet"), where, size)
+    return _seen(request, View(altitude, picture))
+
+
+def prepare(scene: Scene, stage: Stage) -> None:
+    """Compute what pixels are made of, and say what takes long."""
+    is_far = scene.settings.view.altitude > scene.planet.atmosphere_top
+    if not scene.sky.is_solved:
+        stage(SOLVING, None)
+        _ = scene.sky.atmosphere
+        stage(TRACING, None)
+    elif is_far:
+        # The terminator needs many rays.
+        stage(TRACING, None)
+    _ = scene.table
+    scene.workers.check()
+    if scene.planet.clouds:
+        stage(CLOUDS, None)
+        scene.light_clouds()
+        scene.workers.check()
+
+
+def _seen(request: Request, view: View) -> MapSettings:
+    lighting = request.settings.lighting
+    if lighting.sun_disc == "separate":
+        lighting = replace(lighting, sun_disc="include")
+    return replace(request.settings, view=view, lighting=lighting, encoding=Encoding())
+
+
+def _key(request: Request, settings: MapSettings) -> str:
+    # The size of an equirect map is that of its raster alone.
+    parts = (settings.view, settings.lighting, settings.clouds, settings.night)
+    recipe = json.dumps(request.planet.recipe, sort_keys=True, default=str)
+    return "\n".join((recipe, *map(repr, parts)))

@@ -1,0 +1,158 @@
+"""One request of a view, from the knobs to the messages with its pictures."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from threading import Event
+from typing import Any
+
+from skybake.errors import CancelledError, InputError, SkybakeError
+from skybake.image.scene import Scene
+from skybake.image.settings import Encoding
+from skybake.projection import Equirect, Projection
+from skybake.studio.figures import exposures, figures_of
+from skybake.studio.frames import LARGEST_WIDTH, halves, message, refinements
+from skybake.studio.reader import OptionError, Reader, Request
+from skybake.studio.scenes import SOLVING, Scenes, equirect_settings, planet_settings, prepare
+from skybake.studio.state import State, state_from_json
+
+Send = Callable[[dict[str, Any] | bytes], None]
+"""Called from another thread with each answer."""
+
+KINDS = ("equirect", "planet")
+SMALLEST = 16
+
+
+@dataclass
+class ViewRequest:
+    """What a page asks to see, and how far its answer is.
+
+    Attributes
+    ----------
+    number : int
+        By which the page knows the answer.
+    state : State
+        What the knobs are set to.
+    kind : {"equirect", "planet"}
+        The whole sky, or the planet from afar.
+    size : tuple of int
+        Width and height. [pixel]
+    cancel : threading.Event
+        Stops the work.
+    superseded : threading.Event
+        Set when there is a newer request.
+    is_slow : bool
+        Whether it is at work that takes long, or already refines: a newer request then stops it,
+        and else waits for the coarse picture, so that a picture follows a moving knob.
+    is_solving : bool
+        Whether that work is the atmosphere, which a newer request may need as well.
+    """
+
+    number: int
+    state: State
+    kind: str
+    size: tuple[int, int]
+    cancel: Event = field(default_factory=Event)
+    superseded: Event = field(default_factory=Event)
+    is_slow: bool = False
+    is_solving: bool = False
+
+    def supersede(self, *, has_same_world: bool) -> None:
+        """Give way to a newer request as soon as that serves it."""
+        self.superseded.set()
+        if self.is_slow and not (self.is_solving and has_same_world):
+            self.cancel.set()
+
+    def enter_slow(self) -> None:
+        """Tell that what follows takes long.
+
+        Raises
+        ------
+        CancelledError
+            If there is a newer request.
+        """
+        self.is_slow = True
+        if self.superseded.is_set():
+            raise CancelledError("cancelled")
+
+
+def view_request(data: dict[str, Any], number: int) -> ViewRequest:
+    """Read a request.
+
+    Raises
+    ------
+    InputError
+        If it is no request of a view.
+    """
+    view = data.get("view", {})
+    kind = view.get("kind", "equirect") if isinstance(view, dict) else view
+    if kind not in KINDS:
+        raise InputError(f"view: must be one of {', '.join(KINDS)}, got {kind!r}")
+    size = view.get("size", [1024, 512])
+    is_pair = isinstance(size, list) and len(size) == 2
+    if not is_pair or not all(type(one) is int and one >= SMALLEST for one in size):
+        raise InputError(f"view: size must be two whole numbers from {SMALLEST}, got {size!r}")
+    width, height = size
+    if max(width, height) > LARGEST_WIDTH or (kind == "equirect" and width != 2 * height):
+        raise InputError(
+            f"view: size must be at most {LARGEST_WIDTH} and of an equirect view 2:1, got {size!r}"
+        )
+    return ViewRequest(number, state_from_json(data.get("state", {})), kind, (width, height))
+
+
+def answer(view: ViewRequest, reader: Reader, scenes: Scenes, send: Send) -> None:
+    """Answer a request, in a thread that may take its time; errors become answers too."""
+    try:
+        _answer(view, reader, scenes, send)
+    except CancelledError:
+        send({"id": view.number, "cancelled": True})
+    except SkybakeError as error:
+        option = error.option if isinstance(error, OptionError) else None
+        send({"id": view.number, "error": str(error), "option": option})
+    except Exception as error:  # noqa: BLE001 - the page is told, the server goes on
+        send({"id": view.number, "error": f"view: failed unexpectedly ({error!r})"})
+
+
+def _answer(view: ViewRequest, reader: Reader, scenes: Scenes, send: Send) -> None:
+    if view.cancel.is_set():
+        raise CancelledError("cancelled")
+    request = reader.read(view.state)
+    scene, projection = _scene(view, request, scenes)
+
+    def stage(name: str, share: float | None) -> None:
+        view.enter_slow()
+        view.is_solving = name == SOLVING
+        send({"id": view.number, "stage": name, "progress": share})
+
+    prepare(scene, stage)
+    header = {
+        "id": view.number,
+        "kind": view.kind,
+        "channels": 3,
+        "type": "float16",
+        "command": shlex.join(reader.words(view.state)),
+    }
+    figures = None
+    for pixels in refinements(scene, projection):
+        if figures is None:
+            figures = figures_of(scene, request.picture)
+        height, width = pixels.shape[:2]
+        texels, factor = halves(pixels)
+        scale = factor * Encoding().white_luminance
+        shown = {**figures, **exposures(figures, request.picture, scale)}
+        is_final = width == view.size[0]
+        sized = {"width": width, "height": height, "scale": scale, "final": is_final}
+        send(message({**header, **sized, "figures": shown}, texels))
+        if not is_final:
+            view.enter_slow()
+    scenes.keep(request, scene)
+
+
+def _scene(view: ViewRequest, request: Request, scenes: Scenes) -> tuple[Scene, Projection]:
+    if view.kind == "planet":
+        settings = planet_settings(request, view.size)
+        return scenes.scene(request, settings, view.cancel), settings.view.projection
+    settings = equirect_settings(request)
+    return scenes.scene(request, settings, view.cancel), Equirect(view.size[0])

@@ -1,0 +1,67 @@
+"""Servers of the studio as processes of their own, and clients of them."""
+
+import http.client
+import json
+import signal
+from contextlib import contextmanager
+from urllib.parse import urlsplit
+
+import numpy as np
+
+from tests.cli.runs import start
+
+TOKEN = "a-token-of-the-tests"  # noqa: S105
+
+
+class Server:
+    """A running server."""
+
+    def __init__(self, process, url):
+        self.process, self.url = process, url
+        self.port = urlsplit(url).port
+        self.token = url.partition("token=")[2]
+
+    def request(self, path, *, method="GET", body=None, token=True, headers=None):
+        """Return status, headers and body of an answer."""
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=120)
+        given = {"X-Skybake-Token": self.token} if token else {}
+        connection.request(method, path, body, given | (headers or {}))
+        answer = connection.getresponse()
+        content = answer.read()
+        connection.close()
+        return answer.status, dict(answer.headers), content
+
+    def json(self, path, data=None):
+        """Return the JSON of an answer, whatever its status."""
+        method, body = ("GET", None) if data is None else ("POST", json.dumps(data))
+        return json.loads(self.request(path, method=method, body=body)[2])
+
+    def end(self, number=signal.SIGINT):
+        """Send a signal; returns exit status, the rest of stdout, and stderr."""
+        self.process.send_signal(number)
+        output, errors = self.process.communicate(timeout=60)
+        return self.process.returncode, output, errors
+
+
+@contextmanager
+def serving(folder, *arguments, port=0, **environment):
+    """Run a server in a folder as long as the block lasts."""
+    process = start(
+        *("studio", "--no-browser", "--port", port, *arguments),
+        cwd=folder,
+        env={"SKYBAKE_STUDIO_TOKEN": TOKEN} | environment,
+    )
+    try:
+        yield Server(process, process.stdout.readline().strip())
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def read_frame(message):
+    """Return header and pixels of a picture, in cd/m2 of white."""
+    length = int.from_bytes(message[:4], "little")
+    header = json.loads(message[4 : 4 + length])
+    texels = np.frombuffer(message[4 + length :], "<f2")
+    shape = header["height"], header["width"], header["channels"]
+    return header, texels.reshape(shape).astype(np.float32)

@@ -1,0 +1,329 @@
+"""Pictures follow the knobs, each page for itself."""
+
+import asyncio
+import json
+import math
+import shlex
+import time
+from contextlib import asynccontextmanager, suppress
+from pathlib import Path
+
+import aiohttp
+import numpy as np
+import pytest
+
+import skybake
+from tests.cli.runs import invoke
+from tests.studio.servers import read_frame, serving
+
+SMALL = {"kind": "equirect", "size": [64, 32]}
+LARGE = {"kind": "equirect", "size": [512, 256]}
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    with serving(tmp_path_factory.mktemp("live")) as running:
+        yield running
+
+
+class Page:
+    """The socket of one page."""
+
+    def __init__(self, socket):
+        self.socket = socket
+        self.number = 0
+
+    async def ask(self, options=(), changes=(), *, view=SMALL, tag="A"):
+        """Ask for a view; returns its number."""
+        self.number += 1
+        state = {"options": dict(options), "set": dict(changes)}
+        await self.socket.send_json({"id": self.number, "tag": tag, "state": state, "view": view})
+        return self.number
+
+    async def next(self):
+        """Return the next message: JSON, or header and pixels of a picture."""
+        message = await asyncio.wait_for(self.socket.receive(), 240)
+        if message.type is aiohttp.WSMsgType.TEXT:
+            return json.loads(message.data), None
+        assert message.type is aiohttp.WSMsgType.BINARY, message
+        return read_frame(message.data)
+
+    async def end(self, number):
+        """Return all messages up to the last one about a request."""
+        seen = []
+        while True:
+            answer, pixels = await self.next()
+            if answer.get("id") == number:
+                seen.append((answer, pixels))
+                if answer.get("final") or "error" in answer or "cancelled" in answer:
+                    return seen
+
+
+@asynccontextmanager
+async def page_of(server):
+    async with (
+        aiohttp.ClientSession() as session,
+        session.ws_connect(
+            f"http://127.0.0.1:{server.port}/api/live?token={server.token}", max_msg_size=0
+        ) as socket,
+    ):
+        yield Page(socket)
+
+
+def talk(server, conversation, pages=1):
+    """Run a conversation with the sockets of some pages, and return what it returns."""
+
+    async def run():
+        if pages == 1:
+            async with page_of(server) as page:
+                return await conversation(page)
+        async with page_of(server) as first, page_of(server) as second:
+            return await conversation(first, second)
+
+    return asyncio.run(run())
+
+
+def view_of(server, options=(), changes=(), **keywords):
+    """Return header and pixels of the full picture."""
+
+    async def conversation(page):
+        return (await page.end(await page.ask(options, changes, **keywords)))[-1]
+
+    return talk(server, conversation)
+
+
+def test_a_coarse_picture_comes_before_the_full_one(server):
+    async def conversation(page):
+        return await page.end(await page.ask({"sun": "20deg"}, view=LARGE))
+
+    pictures = [(one, pixels) for one, pixels in talk(server, conversation) if pixels is not None]
+    assert [one["width"] for one, _ in pictures] == [256, 512]
+    assert [one["final"] for one, _ in pictures] == [False, True]
+    coarse, full = (one["scale"] * pixels[: len(pixels) // 2] for one, pixels in pictures)
+    assert coarse[..., 1].mean() == pytest.approx(full[..., 1].mean(), rel=0.2)
+
+
+@pytest.mark.parametrize(
+    ("options", "changes"),
+    [
+        ({"sun": "7deg", "sun-azimuth": "120deg"}, {}),
+        ({"sun": "-4deg", "altitude": "2km", "below-horizon": "black"}, {}),
+        (
+            {"preset": "earth-hazy", "method": "hillaire", "sun-disc": "exclude"},
+            {"ozone.column_du": "200"},
+        ),
+    ],
+)
+def test_the_command_bakes_a_map_whose_pixels_equal_the_view(
+    server, tmp_path, monkeypatch, options, changes
+):
+    monkeypatch.chdir(tmp_path)
+    typed = options | {"size": "64x32", "pixel": "float"}
+    header, pixels = view_of(server, typed, changes)
+    result = invoke(*shlex.split(header["command"])[1:], "-o", "sky.exr")
+    assert result.exit_code == 0, result.output
+    baked = skybake.load_environment("sky.exr")
+    expected = np.asarray(baked.pixels[0]) * baked.white_luminance / header["scale"]
+    # Half a unit in the last place of half floats, of which the least is 2^-24.
+    np.testing.assert_allclose(pixels, expected, rtol=2.0**-11, atol=2.0**-25)
+
+
+def test_the_python_snippet_bakes_the_same_file(server, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    options = {"preset": "mars-clear", "size": "32x16", "method": "hillaire"}
+    options |= {"time": "16:30", "site": "gale", "ls": "90"}
+    state = {"options": options, "set": {"dust.optical_depth": "0.1"}}
+    made = server.json("/api/command", {"state": state, "output": "a.exr"})
+    assert invoke(*shlex.split(made["command"])[1:]).exit_code == 0
+    written = Path("a.exr").read_bytes()
+    Path("a.exr").unlink()
+    exec(made["python"], {})  # noqa: S102
+    assert Path("a.exr").read_bytes() == written
+
+
+def test_the_preset_of_changes_makes_the_same_world(server, tmp_path):
+    state = {
+        "options": {"preset": "earth", "visibility": "9km", "clouds": ["cirrus:0.3"]},
+        "set": {"aerosol.profile.scale_height_km": "1.5", "ozone": "none"},
+    }
+    text = server.json("/api/command", {"state": state})["toml"]
+    own = tmp_path / "own.toml"
+    own.write_text(text)
+    changes = skybake.PresetChanges(
+        values=(("aerosol.profile.scale_height_km", 1.5), ("ozone", "none")),
+        visibility=9.0,
+        clouds=({"kind": "cirrus", "cover": 0.3},),
+    )
+    loaded, expected = skybake.load_preset(own).recipe, changes.load("earth").recipe
+    assert loaded == {key: value for key, value in expected.items() if key != "set"}
+    assert text.startswith('extends = "earth"\n')
+
+
+def test_figures_are_those_of_the_map(server):
+    header, _ = view_of(server, {"sun": "20deg"})
+    sky = skybake.Sky("earth", sun_elevation=math.radians(20.0))
+    light = sky.image(width=64).light
+    figures = header["figures"]
+    assert figures["sun_illuminance_lx"] == pytest.approx(light.direct_normal_illuminance, rel=1e-6)
+    assert figures["sky_illuminance_lx"] == pytest.approx(light.sky_illuminance, rel=1e-6)
+    assert figures["sun_elevation_deg"] == pytest.approx(20.0)
+    assert figures["visibility_km"] == pytest.approx(63.4, abs=0.1)
+    assert 0.2 < figures["optical_depth_550"] < 0.25
+    assert figures["white_balance"] == [1, 0, 0, 0, 1, 0, 0, 0, 1]
+
+
+def test_a_night_keeps_its_light_in_half_floats(server):
+    header, pixels = view_of(server, {"sun": "-16deg"})
+    luminance = header["scale"] * pixels[:12].mean()
+    assert 1e-5 < luminance < 1e-1
+    assert pixels.max() > 1000.0
+
+
+def test_the_planet_is_seen_from_afar(server):
+    header, pixels = view_of(server, {"sun": "60deg"}, view={"kind": "planet", "size": [48, 48]})
+    assert header["kind"] == "planet"
+    assert pixels.shape == (48, 48, 3)
+    assert pixels[24, 24].min() > 0.0
+    assert not pixels[0, 0].any()
+
+
+@pytest.mark.parametrize(
+    ("options", "changes", "message", "option"),
+    [
+        (
+            {"sun": "95deg"},
+            {},
+            "Invalid value for '--sun': must be from -90deg to 90deg, got 95deg",
+            "sun",
+        ),
+        ({"lon": "3"}, {}, "--lon: needs --time", "lon"),
+        ({"shine": "3"}, {}, "No such option: --shine", "shine"),
+    ],
+)
+def test_a_bad_value_is_answered_like_the_command_line(server, options, changes, message, option):
+    answer, _ = view_of(server, options, changes)
+    assert (answer["error"], answer["option"]) == (message, option)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "{",
+        "[]",
+        '"x"',
+        '{"id": "one"}',
+        '{"id": 1, "view": {"size": [8, 4]}}',
+        '{"id": 1, "view": {"size": [1e9, 5]}}',
+        '{"id": 1, "view": {"size": [100000, 50000]}}',
+        '{"id": 1, "view": {"kind": "hologram"}}',
+        '{"id": 1, "state": []}',
+        "[" * 5000,
+    ],
+)
+def test_nonsense_is_answered_in_one_line_and_the_socket_stays_open(server, text):
+    async def conversation(page):
+        await page.socket.send_str(text)
+        answer, _ = await page.next()
+        return answer, (await page.end(await page.ask()))[-1][0]
+
+    answer, after = talk(server, conversation)
+    assert "must be" in answer["error"]
+    assert "\n" not in answer["error"]
+    assert after["final"]
+
+
+def test_a_message_of_ten_megabytes_closes_its_socket_alone(server):
+    async def conversation(page, other):
+        with suppress(ConnectionError):  # hung up before all of it had come
+            await page.socket.send_str("x" * 10_000_000)
+        message = await asyncio.wait_for(page.socket.receive(), 60)
+        return message.type, (await other.end(await other.ask()))[-1][0]
+
+    kind, after = talk(server, conversation, pages=2)
+    assert kind in {aiohttp.WSMsgType.CLOSE, aiohttp.WSMsgType.CLOSED, aiohttp.WSMsgType.ERROR}
+    assert after["final"]
+
+
+def test_a_newer_request_takes_the_place_of_an_older_one(server):
+    async def conversation(page):
+        numbers = [await page.ask({"sun": f"{10 + n}deg"}, view=LARGE) for n in range(12)]
+        finished = {}
+        while numbers[-1] not in finished:
+            answer, _ = await page.next()
+            if answer.get("final") or "cancelled" in answer:
+                finished[answer["id"]] = bool(answer.get("final"))
+        return [finished.get(number) for number in numbers]
+
+    ends = talk(server, conversation)
+    assert ends[-1] is True
+    assert None not in ends  # each has an answer
+    assert ends.count(False) >= 9
+
+
+def test_requests_of_other_tags_are_not_disturbed(server):
+    async def conversation(page):
+        one = await page.ask({"sun": "31deg"}, tag="A")
+        other = await page.ask({"sun": "32deg"}, tag="B")
+        finals = {}
+        while len(finals) < 2:
+            answer, _ = await page.next()
+            if "figures" in answer:
+                finals[answer["id"]] = answer["figures"]["sun_elevation_deg"]
+        return finals[one], finals[other]
+
+    assert talk(server, conversation) == pytest.approx((31.0, 32.0))
+
+
+def test_two_pages_are_independent(server):
+    async def conversation(first, second):
+        numbers = await first.ask({"sun": "33deg"}), await second.ask({"sun": "34deg"})
+        ends = await asyncio.gather(first.end(numbers[0]), second.end(numbers[1]))
+        return [end[-1][0]["figures"]["sun_elevation_deg"] for end in ends]
+
+    assert talk(server, conversation, pages=2) == pytest.approx([33.0, 34.0])
+
+
+def test_a_solution_says_so_and_gives_way_to_another_air(server):
+    """The server answers other requests meanwhile."""
+    depth = str(0.2 + 1e-4 * (time.time() % 1000.0))  # never solved before
+
+    async def conversation(page):
+        slow = await page.ask({"preset": "mars"}, {"dust.optical_depth": depth})
+        answer, _ = await page.next()
+        started = time.monotonic()
+        async with page_of(server) as other:
+            await other.end(await other.ask({"sun": "95deg"}))
+        answered = time.monotonic() - started
+        quick = await page.ask({"sun": "22deg"})
+        cancelled = (await page.end(slow))[-1][0]
+        return answer, answered, cancelled, (await page.end(quick))[-1][0]
+
+    answer, answered, cancelled, after = talk(server, conversation)
+    assert answer["stage"] == "solving atmosphere"
+    assert answered < 2.0
+    assert cancelled["cancelled"]
+    assert after["final"]
+
+
+def test_a_page_that_goes_away_stops_its_work(server):
+    depth = str(0.3 + 1e-4 * (time.time() % 1000.0))
+
+    async def conversation(page):
+        await page.ask({"preset": "mars"}, {"dust.optical_depth": depth})
+        await page.next()
+
+    talk(server, conversation)
+    header, _ = view_of(server, {"sun": "23deg"})
+    assert header["final"]
+
+
+def test_a_socket_without_the_token_is_refused(server):
+    async def run(headers, token):
+        async with aiohttp.ClientSession() as session:
+            url = f"http://127.0.0.1:{server.port}/api/live?token={token}"
+            with pytest.raises(aiohttp.WSServerHandshakeError) as caught:
+                await session.ws_connect(url, headers=headers)
+            return caught.value.status
+
+    assert asyncio.run(run({}, "wrong")) == 403
+    assert asyncio.run(run({"Origin": "https://evil.example"}, server.token)) == 403
