@@ -124,8 +124,9 @@ class Behind:
     def whole_sky(self) -> Pixels:
         """Sky, ground and, if the scene has it, the sun's disc, shape (row, column, 3)."""
         pixels = self.sky.copy()
-        if "sun" in self._scene.layer_names:
-            pixels += self._of_bands(partial(self._raster.band, "sun"))
+        for name in self._scene.layer_names:
+            if name != "sky":
+                pixels += self._of_bands(partial(self._raster.band, name))
         if self._scene.settings.encoding.clamp_negative:
             np.maximum(pixels, 0.0, out=pixels)
         return pixels

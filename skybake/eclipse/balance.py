@@ -28,7 +28,7 @@ Array = npt.NDArray[np.float64]
 ALTITUDES = np.array([0.0, 0.02, 0.06, 0.12, 0.22, 0.38, 0.6, 1.0])
 """Altitudes at which the share is tabulated, over that of the top."""
 
-MOST_PASSES = 5
+MOST_PASSES = 4
 TOLERANCE = 0.01
 """Relative change of a share by a pass at which the balance is found."""
 

@@ -9,11 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.eclipse.diffuse import SLOPES
+from skybake.eclipse.rescattering import fill_scattered_again, nearest_slope, scatter_by_slope
 from skybake.jit.kernel import kernel
-from skybake.optics.delta_m import ScaledMedium
 from skybake.optics.phase import eval_phase
-from skybake.scattering.field import altitude_weight, fill_ground_irradiance, sun_weights
-from skybake.scattering.harmonics import fill_harmonics
+from skybake.scattering.field import fill_ground_irradiance
 from skybake.scattering.tables import Atmosphere
 from skybake.scattering.transmittance import fill_sun_column, fill_transmittance
 from skybake.transport.samples import MAX_SAMPLES, allocate_samples
@@ -23,9 +22,6 @@ Array = npt.NDArray[np.float64]
 
 ABOVE, BELOW, AROUND = 11, 5, 8
 """Zenith angles above the horizon and below it, and azimuths, of the rays that look around."""
-
-TURNS = 16
-"""Azimuths, on one side, over which phase functions are averaged."""
 
 SHORTEST, LONGER = 2.0, 0.1
 """Steps count as one emitter up to this length [km], and to this share of their distance."""
@@ -126,27 +122,8 @@ def look_around(
     )
     scatter = np.ones((SLOPES.size, ABOVE + BELOW, wavelengths))
     if not horizontally:
-        scatter = _scatter(scaled, altitude, mu)
+        scatter = scatter_by_slope(scaled, altitude, mu)
     return Emitters(place, bundle, on_ground, sunlight, diffuse, scatter)
-
-
-def _scatter(scaled: ScaledMedium, altitude: float, mu: Array) -> Array:
-    """Return the `scatter` of an altitude, for light from zenith angles all round."""
-    medium = scaled.medium
-    constituents = len(medium.extinction)
-    turn = math.pi * (np.arange(TURNS) + 0.5) / TURNS
-    sine, sine_in = np.sqrt(1.0 - SLOPES**2), np.sqrt(np.maximum(1.0 - mu**2, 0.0))
-    flat = (sine[:, None] * sine_in)[..., None] * np.cos(turn)
-    nu = np.clip((SLOPES[:, None] * mu)[..., None] + flat, -1.0, 1.0)
-    phase = eval_phase(scaled.phase[:constituents], nu.ravel())
-    phase = np.maximum(phase, 0.0).reshape(*nu.shape, constituents, -1).mean(axis=2)
-    place = math.sqrt(altitude / (medium.r_top - medium.r_bottom)) * (len(medium.density) - 1)
-    nodes = np.arange(len(medium.density))
-    density = np.array([np.interp(place, nodes, each) for each in medium.density.T])
-    amount = density[:, None] * medium.scattering
-    total = np.maximum(amount.sum(axis=0), np.finfo(float).tiny)
-    scattered: Array = 4.0 * math.pi * (phase * amount).sum(axis=2) / total
-    return scattered
 
 
 def _zeniths(r: float, r_bottom: float, *, horizontally: bool) -> tuple[Array, Array]:
@@ -193,7 +170,7 @@ def _emit(
         flat = math.sqrt((1.0 - mu_here * mu_here) * (1.0 - mu_s_here * mu_s_here))
         cosine = (nu - mu_here * mu_s_here) / max(flat, 1e-9)
         cosine = min(max(cosine, -1.0), 1.0)
-        _scatter_again(
+        fill_scattered_again(
             field, samples, n, radius - medium.r_bottom, mu_here, mu_s_here, cosine,
             harmonic, chi, four, again,
         )  # fmt: skip
@@ -211,7 +188,7 @@ def _emit(
             moment += (once + again[k]) * t
         middle = moment / mass if mass > 0.0 else t
         _put(place[count], middle * ahead, middle * right, r + middle * mu)
-        place[count, 3] = _nearest_slope(slopes, mu_here)
+        place[count, 3] = nearest_slope(slopes, mu_here)
     count += 1
     if samples.hits_ground[0]:
         t = samples.length[0]
@@ -232,47 +209,5 @@ def _emit(
 
 
 @kernel
-def _scatter_again(
-    field, samples, n, altitude, mu, mu_s, cosine, harmonic, chi, four, out
-):  # fmt: skip
-    """Write what a step scatters toward the receiver of light that was scattered before."""
-    j = sun_weights(field, mu_s, four)
-    low, u = altitude_weight(field, altitude)
-    fill_harmonics(field.harmonics, mu, harmonic)
-    for k in range(out.size):
-        out[k] = 0.0
-        for degree in range(chi.shape[0]):
-            chi[degree, k] = 0.0
-            for c in range(field.source.shape[0]):
-                amount = samples.weight[n, k] * samples.density[n, c]
-                amount += samples.weight[n + 1, k] * samples.density[n + 1, c]
-                chi[degree, k] += amount * field.source[c, degree, k]
-    for p in range(harmonic.size):
-        m = field.harmonics.azimuthal[p]
-        # The Chebyshev polynomial of the azimuth's cosine.
-        before, value = cosine, 1.0
-        for _ in range(m):
-            before, value = value, 2.0 * cosine * value - before
-        value *= harmonic[p]
-        degree = field.harmonics.degree[p]
-        for q in range(4):
-            below, above = field.radiance[low, j + q, p], field.radiance[low + 1, j + q, p]
-            weight = four[q] * value
-            for k in range(out.size):
-                out[k] += weight * chi[degree, k] * (below[k] + u * (above[k] - below[k]))
-    for k in range(out.size):
-        out[k] = max(out[k], 0.0)
-
-
-@kernel
 def _put(out, x, y, z):
     out[0], out[1], out[2], out[3] = x, y, z, -1.0
-
-
-@kernel
-def _nearest_slope(slopes, mu):
-    nearest = slopes[0]
-    for each in slopes:
-        if abs(each - mu) < abs(nearest - mu):
-            nearest = each
-    return nearest
