@@ -168,8 +168,9 @@ class RenderReader:
     def _check_files(self, state: State) -> None:
         for name, text in typed_texts(state):
             if name != "preset" or text != self._preset:
+                is_path = isinstance(self._option(name).type, click.Path)
                 with _messages(name):
-                    check_within(self._folder, name, text)
+                    check_within(self._folder, name, text, is_path=is_path)
         for key, text in state.changes.items():
             check_within(self._folder, "set", f"{key}={text}")
 

@@ -12,6 +12,7 @@ from typing import NamedTuple
 from skybake.image.aim import Aim, Lookout, aimed
 from skybake.image.layers import Pixels
 from skybake.image.scene import Scene
+from skybake.image.sensor import Sensor
 from skybake.image.settings import Encoding, MapSettings, View
 from skybake.jit.workers import ALL_CPUS
 from skybake.pipeline.stages import CoarseStages, KeptStages
@@ -102,7 +103,7 @@ class Scenes:
 
 
 def equirect_settings(request: Request) -> MapSettings:
-    """Return settings of the whole sky as knobs ask for it, whatever kind of map it becomes."""
+    """Return settings of the whole sky as an eye sees it, whatever kind of map it becomes."""
     return _seen(request, replace(request.settings.view, projection=Equirect(), rotation=0.0))
 
 
@@ -142,7 +143,9 @@ def _seen(request: Request, view: View) -> MapSettings:
     lighting = request.settings.lighting
     if lighting.sun_disc == "separate":
         lighting = replace(lighting, sun_disc="include")
-    return replace(request.settings, view=view, lighting=lighting, encoding=Encoding())
+    return replace(
+        request.settings, view=view, lighting=lighting, encoding=Encoding(), sensor=Sensor()
+    )
 
 
 def _key(request: Request, settings: MapSettings) -> str:

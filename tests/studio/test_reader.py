@@ -124,6 +124,8 @@ def test_a_look_asks_for_a_preview(reader):
         ({"preset": "/etc/world.toml"}, {}),
         ({"ground-albedo": "/etc/albedo.csv"}, {}),
         ({"ground-albedo": "../albedo.csv"}, {}),
+        ({"camera": "/etc/camera.csv"}, {}),
+        ({"camera": "../camera.csv"}, {}),
         ({"clouds": ("tile=/etc/cloud.npz",)}, {}),
         ({"clouds": ("tile=../cloud.npz,base=1km",)}, {}),
         ({"clouds": ("cumulus,phase=/etc/phase.csv",)}, {}),

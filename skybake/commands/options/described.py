@@ -25,7 +25,7 @@ _GROUPS: dict[str, tuple[str, ...]] = {
     "Moon": ("moon", "eclipse", "moon_elevation", "moon_azimuth", "moon_phase"),
     "Night": ("night", "stars", "airglow", "zodiacal", "light_pollution"),
     "Sun's disc": ("sun_disc", "sun_size", "sun_soft", "sun_strength"),
-    "Picture": ("preview_ev", "view", "white_balance", "vision"),
+    "Picture": ("preview_ev", "view", "white_balance", "vision", "show"),
     "Map": (
         *("target", "projection", "size", "fov", "look", "cube_layout", "cube_space"),
         *("face_names", "equirect_rows", "rotate"),
@@ -34,6 +34,7 @@ _GROUPS: dict[str, tuple[str, ...]] = {
         *("colorspace", "units", "ev", "pixel", "compression", "mips", "layers"),
         *("clamp_negative", "omit_exposure"),
     ),
+    "Sensor": ("camera", "camera_white", "spectral", "stokes", "polarizer"),
 }
 OTHER = "Other"
 """Group of the options that are in none of the others."""
@@ -41,7 +42,7 @@ OTHER = "Other"
 _SOLVES = frozenset(_GROUPS["World"])
 _CLOUDS = frozenset(_GROUPS["Clouds"])
 _FOLDS = frozenset((*_GROUPS["Sun's disc"], "below_horizon", *_GROUPS["Picture"]))
-_STORED = frozenset((*_GROUPS["Map"], *_GROUPS["File"], "vision"))
+_STORED = frozenset((*_GROUPS["Map"], *_GROUPS["File"], *_GROUPS["Sensor"], "vision", "show"))
 
 
 @dataclass(frozen=True)

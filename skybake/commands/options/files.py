@@ -12,7 +12,7 @@ from skybake.errors import InputError
 _TILE = "tile="
 
 
-def check_within(folder: Path, option: str, text: str) -> None:
+def check_within(folder: Path, option: str, text: str, *, is_path: bool = False) -> None:
     """Refuse the text of an option that names a file out of a folder.
 
     Parameters
@@ -23,13 +23,15 @@ def check_within(folder: Path, option: str, text: str) -> None:
         Long name without dashes.
     text : str
         As it is typed.
+    is_path : bool, optional
+        Whether the whole text is the name of a file.
 
     Raises
     ------
     InputError
         That names the file.
     """
-    for name in files_named(option, text):
+    for name in [text] if is_path else files_named(option, text):
         if not (folder / name).resolve().is_relative_to(folder):
             raise InputError(f"--{option}: file must be in the working folder, got {name!r}")
 
