@@ -61,12 +61,11 @@ def surroundings_of_scene(scene: Scene, edge: int) -> Surroundings:
         discs = [layers.plane(name) for name in ("sun", "moon")]
         cube[face] = smooth[face] + sum(each for each in discs if each is not None)
         scene.workers.check()
-    points = sun_points(scene) if "sun" in scene.layer_names else no_points()
-    return Surroundings(cube, smooth, points.joined(moon_points(scene)))
+    return Surroundings(cube, smooth, sun_points(scene).joined(moon_points(scene)))
 
 
 def sun_points(scene: Scene) -> Points:
-    """Return the disc of a scene's sun, as it is drawn, as points."""
+    """Return the disc of a scene's sun, as it is drawn, as points; none if it is not shown."""
     shown = shown_sun(scene)
     return no_points() if shown is None else _disc_points(scene, shown, scene.sun_xyz()[0])
 
