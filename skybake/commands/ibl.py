@@ -18,6 +18,7 @@ from skybake.commands.options.lighting_settings import (
     program_from_options,
     sky_settings,
 )
+from skybake.commands.options.moonlight import moonlight_from_options, moonlight_needs
 from skybake.commands.options.night import (
     night_from_options,
     night_needs,
@@ -76,7 +77,7 @@ def _prefix(_: click.Context, __: click.Parameter, value: str | None) -> Path | 
 @sun_azimuth_option()
 @moment_options
 @sun_distance_option()
-@moon_options("--time", is_light=False)
+@moon_options("--time")
 @altitude_option()
 @options_together(*some_of(night_options, "night", "airglow", "zodiacal", "light_pollution"))
 @clouds_options()
@@ -126,6 +127,7 @@ def ibl(**options: Any) -> None:
         sun_distance_needs(options, is_timed=is_timed, time="--time"),
         moon_needs(options, is_timed=is_timed, time="--time"),
         night_needs(options, is_timed=is_timed, time="--time"),
+        moonlight_needs(options, is_timed=is_timed, time="--time"),
         lighting_needs(options, program),
     )
     maps, form = lighting_from_options(options, program)
@@ -173,6 +175,7 @@ def _of_sky(
         **positions(options, moment),
         # As points they are too many, and too faint to light anything.
         night=night_from_options({**options, "stars": "exclude"}, moment),
+        moonlight=moonlight_from_options(options, moment, {}),
     )
 
     from skybake.baking import default_path, late_kernels

@@ -16,6 +16,7 @@ from skybake.image.light import (
     attributes_from_light,
     eclipse_attributes,
     light_of_scene,
+    moon_attributes,
     night_attributes,
 )
 from skybake.image.recipe import recipe_attributes
@@ -98,6 +99,7 @@ def bake_lighting(
         **attributes_from_light(light_of_scene(scene)),
         **eclipse_attributes(scene),
         **night_attributes(scene),
+        **moon_attributes(scene),
         **recipe_attributes(scene.planet, scene.settings),
         **(attributes or {}),
     }

@@ -11,7 +11,7 @@ from skybake.angles import direction_from_angles, zenith_azimuth
 from skybake.colour.space import rgb_from_xyz
 from skybake.ibl.cube import Cube, texel_directions
 from skybake.ibl.points import Points, disc, no_points
-from skybake.image.discs import sun_flux
+from skybake.image.discs import ShownDisc, shown_moon, shown_sun
 from skybake.image.raster import Raster
 from skybake.image.scene import Scene
 from skybake.projection.cells import Cells
@@ -43,7 +43,7 @@ class Surroundings:
 
 
 def surroundings_of_scene(scene: Scene, edge: int) -> Surroundings:
-    """Evaluate a scene on a cube; its sun's disc, if it is to be shown, is points besides.
+    """Evaluate a scene on a cube; the discs that it shows are points besides.
 
     Parameters
     ----------
@@ -56,26 +56,39 @@ def surroundings_of_scene(scene: Scene, edge: int) -> Surroundings:
     cube = np.empty_like(smooth)
     for face, canvas in enumerate(Cubemap(edge).canvases()):
         layers = Raster(scene, canvas).layers(0, edge)
-        sky, sun = layers.plane("sky"), layers.plane("sun")
+        sky = layers.plane("sky")
         smooth[face] = 0.0 if sky is None else sky
-        cube[face] = smooth[face] if sun is None else smooth[face] + sun
+        discs = [layers.plane(name) for name in ("sun", "moon")]
+        cube[face] = smooth[face] + sum(each for each in discs if each is not None)
         scene.workers.check()
-    has_sun = "sun" in scene.layer_names
-    return Surroundings(cube, smooth, sun_points(scene) if has_sun else no_points())
+    return Surroundings(cube, smooth, sun_points(scene).joined(moon_points(scene)))
 
 
 def sun_points(scene: Scene) -> Points:
-    """Return the disc of a scene's sun, as it is drawn, as points."""
-    elevation = 0.5 * math.pi - scene.sun_zenith
-    centre = direction_from_angles(scene.sun_bearing, elevation)
-    directions, distances, sizes = disc(centre, scene.sun.angular_radius)
+    """Return the disc of a scene's sun, as it is drawn, as points; none if it is not shown."""
+    shown = shown_sun(scene)
+    return no_points() if shown is None else _disc_points(scene, shown, scene.sun_xyz()[0])
+
+
+def moon_points(scene: Scene) -> Points:
+    """Return the disc of a scene's Moon as points, none of a scene that does not show it."""
+    shown = shown_moon(scene)
+    if shown is None or scene.moonlit is None:
+        return no_points()
+    return _disc_points(scene, shown, scene.moonlit.xyz()[0])
+
+
+def _disc_points(scene: Scene, shown: ShownDisc, xyz: np.ndarray) -> Points:
+    """Return a disc as points of the light that files state, XYZ on a plane that faces it. [lx]"""
+    centre = direction_from_angles(shown.bearing, 0.5 * math.pi - shown.zenith)
+    directions, distances, sizes = disc(centre, shown.angular_radius)
     zenith, azimuth = zenith_azimuth(directions)
     nowhere = np.zeros((len(sizes), 0))
     cells = Cells(zenith, azimuth, distances, sizes, nowhere.astype(np.int64), nowhere)
-    flux = sun_flux(scene, cells)
-    # As much light as files state, of which the parts of the disc are a coarser sum.
+    flux = shown.flux(cells)
+    # The parts of the disc are a coarser sum.
     encoding = scene.settings.encoding
-    stated = rgb_from_xyz(encoding.space) @ scene.sun_xyz()[0] / encoding.white_luminance
+    stated = rgb_from_xyz(encoding.space) @ xyz / encoding.white_luminance
     total = flux.sum(axis=0)
     is_lit = np.abs(total) > 0.0
     flux *= np.where(is_lit, stated / np.where(is_lit, total, 1.0), 0.0)

@@ -82,7 +82,7 @@ def _moon_needs(options: Mapping[str, Any], *, is_known: bool, time: str) -> tup
         return False, f"{shown} needs {time}{by_hand}"
     if shown != "exclude" and options["night"] == "off":
         return False, f"{shown} cannot be combined with --night off"
-    if shown == "only" and options["stars"] == "only":
+    if shown == "only" and options.get("stars") == "only":
         return False, "only cannot be combined with --stars only"
     if shown == "only" and options["sun_disc"] == "only":
         return False, "only cannot be combined with --sun-disc only"
