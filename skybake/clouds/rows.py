@@ -20,6 +20,9 @@ _WIDE = 3.0
 _NEAR = 2.5
 """Distance of the two at most, in sizes of a pixel: they are neighbours of the one between."""
 
+_COARSEST = 0.004
+"""Size of pixels above which each is seen: neighbours may be alike by chance. [rad]"""
+
 _ROWS = 4
 """Rows that a thread takes at a time."""
 
@@ -105,7 +108,8 @@ def fill_between(directions, extent, clear, tolerance, first, last, seen, passin
             for axis in range(3):
                 apart += (directions[j, i + 1, axis] - directions[j, i - 1, axis]) ** 2
             is_due[n] = True
-            if apart > reach * reach or i < 3 or i + 3 >= columns:
+            is_coarse = extent[j, i] > _COARSEST or apart > reach * reach
+            if is_coarse or i < 3 or i + 3 >= columns:
                 continue
             light = clear[j, i]
             if not _alike(seen, passing, light, n - 1, n + 1, tolerance):

@@ -7,15 +7,15 @@ from skybake.clouds.directions import unit_vectors
 from skybake.clouds.rows import see_rows
 from skybake.jit.workers import Workers
 
-TOLERANCE, SIZE = 0.03, 0.01
+TOLERANCE, SIZE = 0.03, 0.002
 
 
 class Picture:
     """Two layers, of which pixels know what is seen; counts those that are asked for."""
 
-    def __init__(self, light, passes, *, spacing=SIZE):
+    def __init__(self, light, passes, *, size=SIZE, spacing=SIZE):
         self.light, self.passes = np.asarray(light, np.float32), np.asarray(passes, np.float32)
-        self.shape, self.spacing = self.light.shape, spacing
+        self.shape, self.size, self.spacing = self.light.shape, size, spacing
         self.asked = 0
 
     def see(self, pixels):
@@ -30,7 +30,7 @@ class Picture:
         azimuth = np.broadcast_to(self.spacing * np.arange(columns), self.shape)
         directions = unit_vectors(np.full(self.shape, 1.5), azimuth)
         numbers = np.arange(rows * columns).reshape(self.shape)[only].ravel()
-        given = directions[only], np.full(self.shape, SIZE)[only]
+        given = directions[only], np.full(self.shape, self.size)[only]
         clear = np.ones((*self.shape, 3), np.float32)[only]
         return see_rows(lambda at: self.see(numbers[at]), *given, clear, tolerance, Workers(1))
 
@@ -60,6 +60,12 @@ def test_pixels_beside_an_edge_are_seen():
 
 def test_pixels_whose_neighbours_are_far_apart_are_seen():
     picture = Picture(*smooth(), spacing=2.0 * SIZE)
+    picture.rows()
+    assert picture.asked == picture.light.size
+
+
+def test_coarse_pixels_are_all_seen():
+    picture = Picture(*smooth(), size=0.01)
     picture.rows()
     assert picture.asked == picture.light.size
 
