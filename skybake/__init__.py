@@ -86,6 +86,8 @@ if TYPE_CHECKING:
         Perspective,
         Projection,
     )
+    from skybake.projection.camera import Camera
+    from skybake.projection.frame import PictureAxes
     from skybake.sequence.bake import bake_sequence
     from skybake.sequence.exposure_curve import ExposureCurve
     from skybake.sequence.frame import FrameOutcome
@@ -105,6 +107,7 @@ __all__ = [
     "ArgumentError",
     "Baked",
     "BakedTables",
+    "Camera",
     "CameraResponse",
     "CancelledError",
     "CelestialFrame",
@@ -146,6 +149,7 @@ __all__ = [
     "Override",
     "Perspective",
     "Phase",
+    "PictureAxes",
     "PictureSettings",
     "Pipeline",
     "Place",
@@ -207,6 +211,7 @@ _HOMES = {
     "ArgumentError": "skybake.errors",
     "Baked": "skybake.baking",
     "BakedTables": "skybake.luts.bake",
+    "Camera": "skybake.projection.camera",
     "CameraResponse": "skybake.colour.camera",
     "CancelledError": "skybake.errors",
     "CelestialFrame": "skybake.ephemeris.celestial",
@@ -247,6 +252,7 @@ _HOMES = {
     "OutputError": "skybake.errors",
     "Override": "skybake.preset",
     "Perspective": "skybake.projection",
+    "PictureAxes": "skybake.projection.frame",
     "Phase": "skybake.preset",
     "PictureSettings": "skybake.image.picture_settings",
     "Pipeline": "skybake.pipeline",

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from skybake.errors import InputError
 from skybake.luts.parametrisations import PARAMETRISATIONS
 from skybake.projection.camera import Camera
-from skybake.projection.frame import Frame, check_look, look_frame, roll_frame
+from skybake.projection.frame import PictureAxes, check_look, look_frame, roll_frame
 from skybake.projection.perspective import WIDEST
 from skybake.scattering.segments import MAX_DISTANCES
 
@@ -118,7 +118,7 @@ class TableSettings:
         }
 
     @property
-    def frame(self) -> Frame:
+    def frame(self) -> PictureAxes:
         """Where the camera's right, its up and its axis look."""
         return roll_frame(look_frame(self.azimuth, self.elevation), self.roll)
 

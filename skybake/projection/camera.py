@@ -12,7 +12,7 @@ import numpy as np
 from skybake.angles import zenith_azimuth
 from skybake.errors import InputError
 from skybake.projection.cells import Array
-from skybake.projection.frame import Frame, look_frame, roll_frame
+from skybake.projection.frame import PictureAxes, look_frame, roll_frame
 
 WORLD_TO_CAMERA, WORLD_TO_NDC = "worldToCamera", "worldToNDC"
 """Names of OpenEXR's standard attributes."""
@@ -70,9 +70,9 @@ class Camera:
             raise InputError("camera: axes must be at right angles and of length 1")
 
     @property
-    def axes(self) -> Frame:
+    def axes(self) -> PictureAxes:
         """Where its right, its up and its middle look, if its lens is not shifted."""
-        return Frame(*self.frame)
+        return PictureAxes(*self.frame)
 
     @property
     def angles(self) -> tuple[float, float, float]:

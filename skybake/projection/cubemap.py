@@ -26,7 +26,7 @@ from skybake.errors import InputError
 from skybake.projection.cells import Array
 from skybake.projection.chart import Canvas, Part, Projection, check_edge, size_text, whole
 from skybake.projection.equirect import Equirect
-from skybake.projection.frame import Frame
+from skybake.projection.frame import PictureAxes
 from skybake.projection.gnomonic import GnomonicChart
 
 FACES = ("px", "nx", "py", "ny", "pz", "nz")
@@ -79,7 +79,7 @@ class FaceChart(GnomonicChart):
             tuple(sign * each for sign, each in zip(signs, axis, strict=True))
             for axis in _FRAMES[face]
         )
-        frame = Frame(*(np.array(axis, dtype=float) for axis in self._axes))
+        frame = PictureAxes(*(np.array(axis, dtype=float) for axis in self._axes))
         super().__init__(frame, 1.0, 1.0, edge, edge)
 
     def angles(self, first: int, last: int) -> tuple[Array, Array]:

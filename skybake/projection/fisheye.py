@@ -25,7 +25,7 @@ from skybake.projection.cells import (
 )
 from skybake.projection.chart import Canvas, Chart, Projection, check_edge, size_text, whole
 from skybake.projection.frame import (
-    Frame,
+    PictureAxes,
     check_look,
     look_frame,
     look_label,
@@ -43,7 +43,7 @@ class FisheyeChart(Chart):
 
     Parameters
     ----------
-    frame : Frame
+    frame : PictureAxes
         Where the picture's right, its top and its middle look.
     fov : float
         Angle that the circle's diameter covers. [rad]
@@ -51,7 +51,7 @@ class FisheyeChart(Chart):
         Width and height. [pixel]
     """
 
-    def __init__(self, frame: Frame, fov: float, edge: int) -> None:
+    def __init__(self, frame: PictureAxes, fov: float, edge: int) -> None:
         self.width = self.height = edge
         self.frame, self.fov = frame, fov
         self._step = fov / edge

@@ -12,7 +12,7 @@ from skybake.errors import InputError
 from skybake.projection.cells import Array
 
 
-class Frame(NamedTuple):
+class PictureAxes(NamedTuple):
     """Unit vectors of a picture's axes, each of shape (3,).
 
     Attributes
@@ -26,7 +26,7 @@ class Frame(NamedTuple):
     forward: Array
 
 
-def look_frame(azimuth: float, elevation: float) -> Frame:
+def look_frame(azimuth: float, elevation: float) -> PictureAxes:
     """Return the axes of a picture that is held upright.
 
     Parameters
@@ -37,19 +37,19 @@ def look_frame(azimuth: float, elevation: float) -> Frame:
     """
     sine, cosine = math.sin(elevation), math.cos(elevation)
     east, south = math.sin(azimuth), -math.cos(azimuth)
-    return Frame(
+    return PictureAxes(
         right=np.array([-south, 0.0, east]),
         up=np.array([-sine * east, cosine, -sine * south]),
         forward=np.array([cosine * east, sine, cosine * south]),
     )
 
 
-def roll_frame(frame: Frame, roll: float) -> Frame:
+def roll_frame(frame: PictureAxes, roll: float) -> PictureAxes:
     """Turn a picture about its middle.
 
     Parameters
     ----------
-    frame : Frame
+    frame : PictureAxes
         Its axes.
     roll : float
         How far the camera is turned clockwise about where it looks, so that what it shows turns
@@ -58,7 +58,7 @@ def roll_frame(frame: Frame, roll: float) -> Frame:
     if roll == 0.0:
         return frame
     sine, cosine = math.sin(roll), math.cos(roll)
-    return Frame(
+    return PictureAxes(
         right=cosine * frame.right - sine * frame.up,
         up=cosine * frame.up + sine * frame.right,
         forward=frame.forward,

@@ -17,7 +17,7 @@ from skybake.projection.cells import (
     subdivide,
 )
 from skybake.projection.chart import Chart
-from skybake.projection.frame import Frame
+from skybake.projection.frame import PictureAxes
 
 # A direction on the edge of a cube belongs to one of two faces, or by rounding to neither.
 _ROUNDING = 1e-9
@@ -28,7 +28,7 @@ class GnomonicChart(Chart):
 
     Parameters
     ----------
-    frame : Frame
+    frame : PictureAxes
         Where the picture's right, its top and its middle look.
     half_width, half_height : float
         Tangents of half the angles that the picture covers.
@@ -40,7 +40,7 @@ class GnomonicChart(Chart):
 
     def __init__(
         self,
-        frame: Frame,
+        frame: PictureAxes,
         half_width: float,
         half_height: float,
         width: int,
