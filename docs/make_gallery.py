@@ -1,7 +1,7 @@
 """Makes the gallery of all presets: ``python docs/make_gallery.py``, in some minutes.
 
 One equirect map a world and sun elevation, each exposed, and balanced, by itself; clouds at draft
-quality. Needs Pillow.
+quality. The studio's pictures of presets are cut out of them. Needs Pillow.
 """
 
 from __future__ import annotations
@@ -24,6 +24,11 @@ FONT_SIZE = 30
 PAPER, INK = (255, 255, 255), (40, 40, 40)
 WIDTH, SMALL_WIDTH = 1250, 900
 IMAGES = Path(__file__).parent / "images"
+THUMBNAILS = Path(__file__).parents[1] / "skybake" / "studio" / "pictures"
+THUMBNAIL_ELEVATION = 5.0
+THUMBNAIL_SIZE = (240, 120)
+SKY = (0.125, 0.0, 0.875, 0.75)
+"""Part of a map that a thumbnail shows: the sky toward the sun, and a strip of the ground."""
 
 
 def main() -> None:
@@ -47,12 +52,20 @@ def main() -> None:
                 picture = _bake(name, elevation, Path(folder))
                 with Image.open(picture) as tile:
                     sheet.paste(tile.convert("RGB"), (_left(column), top + LINE))
+                    if elevation == THUMBNAIL_ELEVATION:
+                        _save_thumbnail(tile.convert("RGB"), name)
             print(name, flush=True)
     _reduced(sheet, WIDTH).save(IMAGES / "gallery.png", optimize=True)
     small = _reduced(sheet, SMALL_WIDTH)
     # Pillow dithers only toward a palette that it is given.
     indexed = small.quantize(palette=small.quantize(256), dither=Image.Dither.FLOYDSTEINBERG)
     indexed.save(IMAGES / "gallery-small.png", optimize=True)
+
+
+def _save_thumbnail(tile: Image.Image, name: str) -> None:
+    box = [round(share * tile.size[i % 2]) for i, share in enumerate(SKY)]
+    thumbnail = tile.crop(box).resize(THUMBNAIL_SIZE, Image.Resampling.LANCZOS)
+    thumbnail.save(THUMBNAILS / f"{name}.jpg", quality=90)
 
 
 def _left(column: int) -> int:

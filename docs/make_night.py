@@ -1,4 +1,4 @@
-"""Makes the picture of night.md: ``python docs/make_night.py``. Needs Pillow."""
+"""Makes the pictures of night.md: ``python docs/make_night.py``. Needs Pillow."""
 
 from __future__ import annotations
 
@@ -11,11 +11,16 @@ from PIL import Image
 
 import skybake
 from skybake.image.image import image_of_scene
+from skybake.image.moonlight import Moonlight
+from skybake.image.picture import code_values
 
-IMAGE = Path(__file__).parent / "images" / "night.jpg"
+IMAGES = Path(__file__).parent / "images"
 SIZE = 640, 400
 GAP = 8
-LOSSY = 88
+LOSSY = 90
+
+TILE = 128, 64
+COLUMNS, FRAMES = 8, 48
 
 
 class View(NamedTuple):
@@ -33,6 +38,12 @@ class View(NamedTuple):
         [km]
     ev : float
         Exposure value.
+    preset : str
+        World.
+    city : float
+        Luminance of the zenith by lamps. [cd m⁻²]
+    vision : str
+        As of `skybake.image.vision`.
     """
 
     latitude: float
@@ -41,31 +52,45 @@ class View(NamedTuple):
     look: tuple[float, float, float]
     altitude: float
     ev: float
+    preset: str = "earth"
+    city: float = 0.0
+    vision: str = "camera"
 
+
+PARIS = View(48.86, 2.35, "2026-08-12T23:30Z", (60.0, 28.0, 80.0), 0.0, -5.5, city=3e-3)
 
 VIEWS = (
     View(-24.6, -70.4, "2026-06-17T01:30Z", (140.0, 35.0, 95.0), 2.6, -9.5),
     View(20.6, -156.4, "2026-03-17T05:40Z", (275.0, 25.0, 80.0), 0.0, -8.9),
     View(0.0, -60.0, "2026-06-17T04:00Z", (180.0, -18.0, 40.0), 400.0, -8.2),
     View(-33.0, 18.4, "2026-05-20T18:30Z", (175.0, 42.0, 60.0), 0.0, -8.5),
+    PARIS,
+    PARIS._replace(vision="eye"),
 )
+
+MARS = View(-4.59, 137.44, "2026-11-26T05:20Z", (284.0, 27.0, 58.0), 0.0, -0.2, "mars")
+
+NOON_TO_NOON = (-24.6, -70.4, "2026-08-21T16:40Z", "2026-08-22T16:10Z")
+"""Latitude, longitude [deg] and the first and the last time of the contact sheet."""
 
 
 def main() -> None:
-    """Draw the views, two by two."""
+    """Draw the views, two by two, that from Mars, and a day."""
     width, height = SIZE
-    sheet = np.full((2 * height + GAP, 2 * width + GAP, 3), 255, np.uint8)
+    rows = len(VIEWS) // 2
+    sheet = np.full(((height + GAP) * rows - GAP, 2 * width + GAP, 3), 255, np.uint8)
     for i, view in enumerate(VIEWS):
         row, column = (height + GAP) * (i // 2), (width + GAP) * (i % 2)
         sheet[row : row + height, column : column + width] = picture(view)
-    Image.fromarray(sheet).save(IMAGE, quality=LOSSY)
+    Image.fromarray(sheet).save(IMAGES / "night.jpg", quality=LOSSY)
+    Image.fromarray(picture(MARS)).save(IMAGES / "night-mars.jpg", quality=LOSSY)
+    Image.fromarray(contact_sheet()).save(IMAGES / "night-day.jpg", quality=LOSSY)
 
 
 def picture(view: View) -> np.ndarray:
     """Return code values of a view, shape (height, width, 3)."""
-    place = skybake.find_place(
-        latitude=math.radians(view.latitude), longitude=math.radians(view.longitude)
-    )
+    planet = "mars" if view.preset == "mars" else "earth"
+    place = skybake.Place(math.radians(view.latitude), math.radians(view.longitude), planet)
     moment = skybake.sun_at(view.time, place)
     bearing, elevation, width = map(math.radians, view.look)
     settings = skybake.map_settings(
@@ -73,10 +98,34 @@ def picture(view: View) -> np.ndarray:
         altitude=view.altitude,
         sun_elevation=moment.sun_elevation,
         sun_azimuth=moment.sun_azimuth,
-        night=skybake.Night(moment.celestial, is_refracted=moment.is_refracted),
+        night=skybake.Night(moment.celestial, is_refracted=moment.is_refracted, city=view.city),
     )
-    scene = skybake.Scene(skybake.load_preset("earth"), settings)
-    return image_of_scene(scene).picture(view.ev)
+    image = image_of_scene(skybake.Scene(skybake.load_preset(view.preset), settings))
+    values: np.ndarray = code_values(image.pixels, image.encoding, view.ev, vision=view.vision)
+    return values
+
+
+def contact_sheet() -> np.ndarray:
+    """Return a day from noon to noon, each map exposed for itself."""
+    latitude, longitude, start, end = NOON_TO_NOON
+    place = skybake.find_place(latitude=math.radians(latitude), longitude=math.radians(longitude))
+    moments = skybake.TimeSpan(start, end, place).moments(FRAMES)
+    pipeline = skybake.Pipeline()
+    width, height = TILE
+    sheet = np.zeros((height * (FRAMES // COLUMNS), width * COLUMNS, 3), np.uint8)
+    for i, moment in enumerate(moments):
+        settings = skybake.map_settings(
+            "equirect",
+            TILE,
+            sun_elevation=moment.sun_elevation,
+            sun_azimuth=moment.sun_azimuth,
+            night=skybake.Night(moment.celestial),
+            moonlight=Moonlight(moment.lit_moon),
+        )
+        row, column = height * (i // COLUMNS), width * (i % COLUMNS)
+        tile = pipeline.image("earth", settings).picture()
+        sheet[row : row + height, column : column + width] = tile
+    return sheet
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from skybake.baking import Baked, bake
     from skybake.baking.convert import Converted, convert
     from skybake.baking.orientation_chart import bake_orientation_chart
+    from skybake.colour.camera import CameraResponse, load_camera
     from skybake.colour.space import ColourSpace
     from skybake.commands.in_notebook import StudioFrame, studio
     from skybake.environment.environment import Environment
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
     from skybake.image.night import Night
     from skybake.image.picture_settings import PictureSettings
     from skybake.image.scene import Scene
+    from skybake.image.sensor import Sensor
     from skybake.image.settings import Clouds, Encoding, Lighting, MapSettings, View, map_settings
     from skybake.image.target import TARGETS, Target, TargetAxes, TargetReason, find_target
     from skybake.jit.workers import Workers
@@ -102,6 +104,7 @@ __all__ = [
     "ArgumentError",
     "Baked",
     "BakedTables",
+    "CameraResponse",
     "CancelledError",
     "CelestialFrame",
     "CloudLayer",
@@ -156,6 +159,7 @@ __all__ = [
     "Ramp",
     "RayleighPhase",
     "Scene",
+    "Sensor",
     "SequenceResult",
     "Sky",
     "SkybakeError",
@@ -182,6 +186,7 @@ __all__ = [
     "default_manifest",
     "find_place",
     "find_target",
+    "load_camera",
     "load_environment",
     "load_preset",
     "map_settings",
@@ -200,6 +205,7 @@ _HOMES = {
     "ArgumentError": "skybake.errors",
     "Baked": "skybake.baking",
     "BakedTables": "skybake.luts.bake",
+    "CameraResponse": "skybake.colour.camera",
     "CancelledError": "skybake.errors",
     "CelestialFrame": "skybake.ephemeris.celestial",
     "CloudLayer": "skybake.preset",
@@ -254,6 +260,7 @@ _HOMES = {
     "Ramp": "skybake.sequence.ramp",
     "RayleighPhase": "skybake.preset",
     "Scene": "skybake.image.scene",
+    "Sensor": "skybake.image.sensor",
     "SequenceResult": "skybake.sequence.run",
     "SITES": "skybake.ephemeris.place",
     "Sky": "skybake.pipeline",
@@ -281,6 +288,7 @@ _HOMES = {
     "default_manifest": "skybake.sequence.products",
     "find_place": "skybake.ephemeris.place",
     "find_target": "skybake.image.target",
+    "load_camera": "skybake.colour.camera",
     "load_environment": "skybake.environment.load",
     "load_preset": "skybake.preset",
     "map_settings": "skybake.image.settings",

@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from skybake.optics.matrix import rayleigh_matrix, unpolarising_matrix
 from skybake.optics.medium import Medium, altitude_nodes
-from skybake.optics.phase import scattering_angles
+from skybake.optics.phase import integrate_phase, scattering_angles
 
 Array = npt.NDArray[np.float64]
 
@@ -50,6 +51,58 @@ def load_irradiance_truth(name: str) -> np.ndarray:
         Fields as the files' columns; what was not computed is NaN.
     """
     return _load(f"irradiance_{name}_*km.csv")
+
+
+def load_vector_truth(name: str) -> np.ndarray:
+    """Stokes vectors of "RAY" or "RAYMIE", at the ground.
+
+    Returns
+    -------
+    structured ndarray, shape (row,)
+        Fields as the file's columns.
+    """
+    path = TRUTH_FOLDER / f"vector_{name}_0.001km.csv"
+    return np.genfromtxt(path, delimiter=",", names=True, usecols=range(1, 20))
+
+
+@functools.cache
+def vector_medium(name: str) -> Medium:
+    """The air of a vector table, at `TRUTH_WAVELENGTHS`."""
+    clear = _earth_a()
+    isotropic = unpolarising_matrix(clear.phase[2])
+    molecules = rayleigh_matrix(np.zeros(3))
+    kept = [0, 2] if name == "RAY" else [0, 1, 2]
+    density, scattering, extinction, phase = (
+        clear.density.copy(), clear.scattering.copy(), clear.extinction.copy(), clear.phase.copy()
+    )  # fmt: skip
+    table = np.genfromtxt(
+        TRUTH_FOLDER / "vector_aerosol_scattering_matrix.csv", delimiter=",", names=True
+    )
+    air = np.genfromtxt(TRUTH_FOLDER / "vector_atmosphere.csv", delimiter=",", names=True)[:3]
+    angle = np.radians(table["angle_deg"])
+    p11, p12, p33 = (
+        np.stack(
+            [
+                np.interp(scattering_angles(), angle, table[f"{each}_{w:.0f}"])
+                for w in TRUTH_WAVELENGTHS
+            ],
+            axis=1,
+        )
+        for each in ("P11", "P12", "P33")
+    )
+    norm = integrate_phase(p11)
+    density[:, 1] = np.exp(-_altitudes(6360.0) / 1.5)
+    extinction[1] = _coefficient_of(air["aerosol_optical_depth"], 1.5)
+    scattering[1] = air["aerosol_ssa"] * extinction[1]
+    phase[1] = p11 / norm
+    matrix = np.stack([molecules, np.stack([p12, p11, p33]) / norm, isotropic])
+    return clear._replace(
+        density=np.ascontiguousarray(density[:, kept]),
+        scattering=scattering[kept],
+        extinction=extinction[kept],
+        phase=phase[kept],
+        matrix=matrix[kept],
+    )
 
 
 def truth_medium(name: str) -> Medium:

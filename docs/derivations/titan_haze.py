@@ -57,6 +57,14 @@ def pair_distances():
     return distance, share
 
 
+def _coherent(size, angles):
+    """Light of all monomers together over that of one, by their distances."""
+    distance, share = pair_distances()
+    twice_sine = 2.0 * np.sin(np.radians(angles) / 2.0)
+    pairs = np.sinc(np.multiply.outer(twice_sine, distance * size) / np.pi) @ share
+    return pairs * (MONOMERS**2 - MONOMERS) + MONOMERS
+
+
 def aggregate(wavelength, angles):
     """Phase function of aggregates by the formulae, not normalised."""
     rows = read_columns("titan_tholin_refractive_index.csv")
@@ -66,9 +74,7 @@ def aggregate(wavelength, angles):
     _, scattering, _, _ = miepython.efficiencies_mx(index, np.array([size]))
     distance, share = pair_distances()
     distance = distance * size
-    twice_sine = 2.0 * np.sin(np.radians(angles) / 2.0)
-    pairs = np.sinc(np.multiply.outer(twice_sine, distance) / np.pi) @ share
-    coherent = pairs * (MONOMERS**2 - MONOMERS) + MONOMERS
+    coherent = _coherent(size, angles)
     monomer = miepython.i_unpolarized(index, size, np.cos(np.radians(angles)), norm="one")
     phase = coherent * monomer
     depth = np.sum(share / distance**2) * (MONOMERS - 1) / 4.0 * scattering[0] * size**2
@@ -84,6 +90,19 @@ def haze_phase(wavelength):
     isotropic = max(1.0 - wanted / mean_cosine(phase, ANGLES), 0.0)
     print(f"{wavelength:.0f} nm: isotropic {isotropic:.3f}", flush=True)
     return normalise((1.0 - isotropic) * phase + isotropic / (4.0 * np.pi), ANGLES)
+
+
+def polarised_share(wavelength, angles):
+    """Share at angles of the light that is polarised as a monomer's."""
+    rows = read_columns("titan_tholin_refractive_index.csv")
+    nodes, real, imaginary = np.array([[float(x) for x in row.values()] for row in rows]).T
+    index = complex(np.interp(wavelength, nodes, real), -np.interp(wavelength, nodes, imaginary))
+    size = 2.0 * np.pi * MONOMER_RADIUS / wavelength
+    monomer = miepython.i_unpolarized(index, size, np.cos(np.radians(angles)), norm="one")
+    total = np.exp(np.interp(angles, ANGLES, np.log(haze_phase(wavelength))))
+    polarised = monomer * _coherent(size, angles)
+    # All of what is scattered forward is coherent.
+    return polarised / polarised[0] * total[0] / total
 
 
 def albedos():

@@ -50,6 +50,10 @@ def _check_encoding(path: Path, settings: MapSettings) -> None:
         from skybake.baking.parts import check_parts
 
         check_parts(path, settings)
+    if not settings.sensor.is_eye:
+        from skybake.baking.bands import check_bands
+
+        check_bands(path, settings)
     if encoding.mips:
         from skybake.baking.mips import check_mips
 

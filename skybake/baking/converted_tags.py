@@ -9,6 +9,7 @@ from typing import Any
 
 from skybake.environment.environment import Environment
 from skybake.formats.spec import Attribute
+from skybake.formats.spectral_exr import SPECTRAL_UNITS
 from skybake.image.light import attributes_from_light, light_from_attributes
 from skybake.image.recipe import HASH_ATTRIBUTE, LONGEST_RECIPE
 from skybake.projection.of_file import file_recipe
@@ -42,7 +43,9 @@ def converted_attributes(
     kept = {
         name: value
         for name, value in before.attributes.items()
-        if (name.startswith(_OWN) or name in _KEPT) and isinstance(value, str | int | float | tuple)
+        if (name.startswith(_OWN) or name in _KEPT)
+        and name != SPECTRAL_UNITS
+        and isinstance(value, str | int | float | tuple)
     }
     kept.pop(HASH_ATTRIBUTE, None)
     return {
@@ -70,7 +73,7 @@ def _recipe(before: Environment, after: Environment, encoding: Mapping[str, Any]
     shown = recipe.get("map")
     was = shown if isinstance(shown, dict) else {}
     layout = before.projection.recipe()
-    # Of another projection some keys have no meaning.
+    # Of another projection, or without a spectrum, some keys have no meaning.
     others = {key: value for key, value in was.items() if key not in _layout_keys(before)}
     if others.get("sun_disc") == "separate":
         others["sun_disc"] = "include"
@@ -94,4 +97,5 @@ def _recipe(before: Environment, after: Environment, encoding: Mapping[str, Any]
 
 def _layout_keys(environment: Environment) -> set[str]:
     keys = set(environment.projection.recipe())
-    return keys | {*("equirect_rows", "cube_layout", "cube_space", "face_names"), "mips", "layers"}
+    others = ("equirect_rows", "cube_layout", "cube_space", "face_names")
+    return keys | {*others, "mips", "layers", "wavelengths_nm"}

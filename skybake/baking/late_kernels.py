@@ -48,7 +48,8 @@ def compile_kernels() -> None:
     rays = group_rays(np.zeros((1, 4)))
     samples, scratch = allocate_samples(scaled.medium), allocate_scratch(field, rays)
     sources = field, side_by_side(field), no_horizon_peaks(scaled), scaled
-    add_diffuse(*sources, rays, 0, 0, samples, scratch, light)
+    stokes = np.zeros((0, 2 * light.shape[1]), np.float32)
+    add_diffuse(*sources, rays, 0, 0, samples, scratch, light, stokes)
     table, mu = np.zeros((1, 1, 1)), np.zeros(0)
     columns, visible = np.zeros((0, seen.density.shape[1])), np.zeros(0, np.bool_)
     fill_sight_columns(seen, table, seen.r_bottom, mu, columns, visible)

@@ -80,7 +80,8 @@ def open_parts(
 def _part_spec(name: str, whole: MapSpec, pixels: dict[str, str]) -> MapSpec:
     compression = whole.compression
     # Ringing around the disc would fill its blocks, and that of a transmittance exceed 1.
-    if name in {"sun", "stars", "transmittance"} and compression.partition(":")[0] in _LOSSY:
+    is_sharp = name in {"sun", "moon", "stars", "transmittance"}
+    if is_sharp and compression.partition(":")[0] in _LOSSY:
         compression = _LOSSLESS
     return replace(
         whole,
@@ -99,6 +100,6 @@ def _part_pixels(scene: Scene) -> dict[str, str]:
     return {
         "sky": sky,
         "clouds": sky,
-        **dict.fromkeys(("sun", "stars"), "float" if wanted == "auto" else wanted),
+        **dict.fromkeys(("sun", "moon", "stars"), "float" if wanted == "auto" else wanted),
         "transmittance": "half" if wanted == "auto" else wanted,
     }

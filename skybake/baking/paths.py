@@ -14,6 +14,7 @@ from skybake.ephemeris.celestial import J2000
 from skybake.errors import InputError
 from skybake.formats.cube_file import is_cube_file
 from skybake.image.night import Night
+from skybake.image.sensor import Sensor
 from skybake.image.settings import Clouds, Encoding, Lighting, MapSettings
 from skybake.preset import Planet
 from skybake.projection import Cubemap, Projection
@@ -60,6 +61,7 @@ def default_path(planet: Planet, settings: MapSettings) -> Path:
         *(_clouds(settings.clouds) if planet.clouds else ()),
         encoding.target or "",
         view.below_horizon if view.below_horizon != "ground" else "",
+        *_sensor(settings.sensor),
         view.projection.label,
     )
     return Path("_".join(filter(None, parts)) + usual_suffix(settings))
@@ -94,10 +96,23 @@ def _night(night: Night) -> tuple[str, ...]:
         for name, value in (("airglow", night.airglow), ("zodiacal", night.zodiacal))
         if value != 1.0
     )
+    city = () if night.city == 0.0 else (f"city{1e3 * night.city:.3g}mcd",)
     # By hand, of no time that would move the sun.
     by_hand = night.frame.year == J2000
     stands = f"lst{math.degrees(night.frame.sidereal_time):.2f}deg" if by_hand else ""
-    return (stands, stars, *scales)
+    return (stands, stars, *scales, *city)
+
+
+def _sensor(sensor: Sensor) -> tuple[str, ...]:
+    """Name what a map records besides what an eye sees, or instead."""
+    camera = sensor.response
+    return (
+        "" if camera is None else f"camera-{Path(camera.name).stem}",
+        "unbalanced" if camera is not None and camera.white == "none" else "",
+        "" if sensor.wavelengths is None else "spectral",
+        "stokes" if sensor.stokes else "",
+        "" if sensor.polarizer is None else f"polarizer{math.degrees(sensor.polarizer):g}deg",
+    )
 
 
 def usual_suffix(settings: MapSettings) -> str:

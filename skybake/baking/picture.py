@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from skybake.colour.white_balance import chromaticity
-from skybake.formats.preview import open_preview
+from skybake.formats.preview import open_preview, write_picture
 from skybake.formats.whole_files import WholeFiles
 from skybake.image.layers import Pixels
 from skybake.image.meter import scene_white
@@ -66,6 +66,9 @@ def open_picture(
     """
     ev, white = picture_ev(scene, settings), scene_white(scene, settings)
     shown = picture_projection(scene.settings.view, settings.shot)
+    if settings.show != "light":
+        draw = partial(_draw_polarisation, scene, path, settings, shown, files)
+        return OpenPicture(ev, None, shown, draw)
     show = stack.enter_context(
         open_preview(
             path,
@@ -79,5 +82,20 @@ def open_picture(
         ev,
         None if white is None else chromaticity(white),
         shown,
-        partial(show_scene, scene, show, ev, white, shown),
+        partial(show_scene, scene, show, ev, white, shown, settings.vision),
     )
+
+
+def _draw_polarisation(
+    scene: Scene,
+    path: Path,
+    settings: PictureSettings,
+    shown: Projection,
+    files: WholeFiles,
+    _: Pixels | None,
+) -> None:
+    from skybake.image.polarisation_picture import polarisation_picture
+
+    codes = polarisation_picture(scene, shown, settings.show)
+    texts = preview_texts(scene.planet, scene.settings, 0.0, settings)
+    write_picture(path, codes.shape[1], codes.shape[0], [codes], texts=texts, files=files)

@@ -103,7 +103,7 @@ def kept_picture(picture: Picture, width: int) -> tuple[Picture, Pixels]:
 
     def rows(first: int, last: int) -> Band:
         band = picture.rows(first, last)
-        kept[first:last] = band[0] if isinstance(band, tuple) else band
+        kept[first:last] = band[0] if isinstance(band, tuple) else band[..., :3]
         return band
 
     return picture._replace(rows=rows), kept

@@ -15,7 +15,8 @@ from skybake.formats.reader import ImageFile
 from skybake.formats.shrink import Shrinking
 from skybake.image.picture import balanced
 from skybake.image.picture_settings import PictureSettings
-from skybake.image.picture_texts import shot_text, white_balance_text
+from skybake.image.picture_texts import shot_text, vision_text, white_balance_text
+from skybake.image.vision import as_seen
 from skybake.projection import Perspective
 from skybake.projection.lookup import Lookup
 from skybake.projection.of_file import file_canvas, file_rotation
@@ -97,10 +98,11 @@ def preview_file(source: Path, path: Path, settings: PictureSettings | None = No
         "skybake:view": settings.view,
         "skybake:whiteBalance": white_balance_text(wanted),
         "skybake:shot": "none" if settings.shot is None else shot_text(settings.shot),
+        **vision_text(settings.vision),
     }
     write_preview(
         path,
-        balanced(shown, space, white),
+        balanced(as_seen(shown, space, white_luminance, settings.vision), space, white),
         space,
         gain=white_luminance / luminance_from_ev(ev),
         view=settings.view,

@@ -24,7 +24,12 @@ from skybake.projection import Cubemap, Equirect, Fisheye, Perspective
 from skybake.projection.cubemap import LAYOUTS
 from skybake.reference import cloudy
 from skybake.reference.estimate import radiance
+from skybake.reference.stokes import stokes
 from skybake.scattering.atmosphere import build_atmosphere
+from skybake.scattering.spin_harmonics import fill_each_spin, harmonic_count
+from skybake.scattering.stokes import polarisation_of
+from skybake.scattering.stokes_solver import ORDER, trace_stokes
+from skybake.scattering.tables import Atmosphere
 from skybake.sky.sky import METHODS, WAVELENGTHS, Sky
 
 SMALL = MapSettings(View(projection=Equirect(16)))
@@ -44,11 +49,12 @@ def compile_all() -> None:
         _compile_clouds(Path(folder))
     medium = build_medium(planet, WAVELENGTHS)
     # Tables that are already stored needed no kernels; only dust has an aureole.
-    for method in ("full", "hillaire"):
-        build_atmosphere(medium, method)
+    build_atmosphere(medium, "hillaire")
+    _compile_polarisation(build_atmosphere(medium, "full"))
     build_atmosphere(build_medium(load_preset("mars"), WAVELENGTHS), "full")
     here = np.zeros(1)
     radiance(medium, 0.0, SMALL.lighting.sun_elevation, here, here, samples=2)
+    stokes(medium, 0.0, SMALL.lighting.sun_elevation, here, here, samples=2)
     Sky(planet, SMALL.lighting.sun_elevation).radiance(np.array([0.0, 1.0, 0.0]))
 
 
@@ -73,6 +79,16 @@ def solve(names: Iterable[str | Path], notice: Callable[[str], None]) -> None:
         if not sky.is_solved:
             notice(f"solving for the light in the atmosphere of {planet.name}")
             _ = sky.atmosphere
+
+
+def _compile_polarisation(atmosphere: Atmosphere) -> None:
+    """Trace a ray through light that is not polarised; the true one takes long to solve for."""
+    count = 2 * harmonic_count(ORDER) * atmosphere.scaled.mixture.size
+    dark = np.zeros((*atmosphere.field.radiance.shape[:2], count), np.float32)
+    polarisation = polarisation_of(atmosphere.scaled, ORDER, dark)
+    fill_each_spin(polarisation.harmonics, np.zeros(1), np.zeros((1, 2, harmonic_count(ORDER))))
+    ray = np.array([[atmosphere.medium.r_bottom, 1.0, 1.0, 1.0]])
+    trace_stokes(atmosphere, polarisation, ray)
 
 
 def _compile_clouds(folder: Path) -> None:
@@ -101,7 +117,8 @@ def _kinds() -> list[MapSettings]:
     cubes = [Cubemap(16, layout) for layout in LAYOUTS]
     projections = (*cubes, Fisheye(16), Perspective(16, 8))
     return [
-        *(replace(SMALL, lighting=Lighting(method=method)) for method in METHODS),
+        # The method scalar has the kernels of the full one.
+        *(replace(SMALL, lighting=Lighting(method=each)) for each in METHODS if each != "scalar"),
         replace(SMALL, lighting=Lighting(math.radians(-4.0))),
         replace(SMALL, lighting=Lighting(NIGHT), night=Night(CelestialFrame("earth", 0.0, 0.0))),
         replace(SMALL, lighting=Lighting(moon=Moon(Lighting.sun_azimuth, Lighting.sun_elevation))),

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from skybake.baking.checks import check_targets
 from skybake.baking.losses import HalfLoss, scene_warnings
@@ -15,13 +17,12 @@ from skybake.baking.pixel_type import PixelType, fitting_pixel, value_range
 from skybake.formats.spec import Attribute, MapSpec
 from skybake.formats.whole_files import WholeFiles
 from skybake.image.light import (
-    STAR_ILLUMINANCE,
     Light,
     attributes_from_light,
     eclipse_attributes,
     light_of_scene,
     moon_attributes,
-    star_attributes,
+    night_attributes,
 )
 from skybake.image.parts import part_names
 from skybake.image.picture_settings import PictureSettings
@@ -30,7 +31,11 @@ from skybake.image.recipe import recipe_attributes
 from skybake.image.scene import Scene
 from skybake.image.settings import MapSettings
 from skybake.preset import Planet, load_preset
+from skybake.projection.chart import Canvas
 from skybake.sidecar.map_light import MapLight, map_light
+
+if TYPE_CHECKING:
+    from skybake.baking.bands import Bands
 
 FROM_BELOW = ("skybake:illuminanceFromBelow", "skybake:groundIlluminanceFromBelow")
 """Attributes of maps that do not show the ground. [lx]"""
@@ -71,8 +76,8 @@ class Baked(Light):
         What files state of an eclipse; empty without one.
     moonlight : mapping of str to Attribute
         What files state of the Moon as a light; empty without it.
-    star_illuminance : float or None
-        Of the horizontal by stars; None of a map without them. [lx]
+    night : mapping of str to Attribute
+        What files state of the lights of the night; empty by day.
     """
 
     files: tuple[Path, ...]
@@ -88,7 +93,7 @@ class Baked(Light):
     light_files: tuple[Path, ...] = ()
     eclipse: Mapping[str, Attribute] = field(default_factory=dict)
     moonlight: Mapping[str, Attribute] = field(default_factory=dict)
-    star_illuminance: float | None = None
+    night: Mapping[str, Attribute] = field(default_factory=dict)
 
 
 def bake(
@@ -186,20 +191,20 @@ def bake_scene(
     planet, settings = scene.planet, scene.settings
     paths = map_paths(output, settings)
     begin = stage or _ignore
+    bands = _bands(scene, None if preview is None else picture)
     _ = scene.sun  # which can be refused, before what takes long
     if planet.clouds:
         begin("clouds")
         scene.light_clouds()
     begin("pixels")
     light = light_of_scene(scene)
-    eclipse = eclipse_attributes(scene)
-    from_below, starlight = _from_below(scene), star_attributes(scene)
-    moonlight = moon_attributes(scene)
+    eclipse, moonlight = eclipse_attributes(scene), moon_attributes(scene)
+    from_below, night = _from_below(scene), night_attributes(scene)
     described = None if light_files is None else map_light(scene, light)
     attributes = {
         **attributes_from_light(light),
         **({} if from_below is None else dict(zip(FROM_BELOW, from_below, strict=True))),
-        **starlight,
+        **night,
         **moonlight,
         **eclipse,
         **recipe_attributes(planet, settings),
@@ -207,25 +212,12 @@ def bake_scene(
     }
     encoding = settings.encoding
     canvases = settings.view.projection.canvases()
-    rasters = [Raster(scene, canvas) for canvas in canvases]
+    shows, rasters = _rasters(scene, bands, canvases)
     peak = max(raster.peak for raster in rasters)
-    largest, smallest = value_range(scene, peak)
-    warnings = scene_warnings(scene, peak)
+    largest, smallest = bands.value_range(peak) if bands else value_range(scene, peak)
+    warnings = scene_warnings(scene, peak) + (bands.warnings() if bands else [])
     stored = fitting_pixel(encoding.pixel, largest, smallest) if pixel is None else pixel
-
-    def spec(raster: Raster) -> MapSpec:
-        return MapSpec(
-            raster.canvas.width,
-            raster.canvas.height,
-            encoding.space,
-            encoding.white_luminance,
-            pixel=stored,
-            compression=encoding.compression,
-            envmap=raster.canvas.envmap,
-            states_exposure=not encoding.omit_exposure,
-            attributes=attributes,
-        )
-
+    spec = partial(_spec, settings=settings, stored=stored, attributes=attributes, bands=bands)
     with ExitStack() as stack:
         if files is None:
             files = stack.enter_context(WholeFiles())
@@ -236,10 +228,10 @@ def bake_scene(
             look = picture or PictureSettings()
             shown = open_picture(scene, preview, look, files, stack)
         is_radiance = paths[0].suffix.lower() == ".hdr"
-        with open_pictures(scene, rasters, paths, spec, files) as pictures:
+        with open_pictures(shows, rasters, paths, spec, files) as pictures:
             loss, kept = None, None
             if shown is not None and shown.projection == settings.view.projection:
-                is_whole = part_names(scene)[0] == "beauty"
+                is_whole = part_names(shows)[0] == "beauty" and settings.sensor.response is None
                 if is_whole and len(pictures) == 1:
                     pictures[0], kept = kept_picture(pictures[0], canvases[0].width)
             if is_radiance or (encoding.pixel == stored and stored != "float"):
@@ -251,10 +243,7 @@ def bake_scene(
             if shown is not None:
                 shown.draw(kept)
         if light_files and described is not None:
-            from skybake.sidecar.light_file import write_light_files
-
-            time = attributes.get("skybake:time")
-            write_light_files(light_files, described, paths, files, time=time)
+            _write_lights(light_files, described, paths, files, attributes)
     return Baked(
         **vars(light),
         files=paths,
@@ -270,8 +259,72 @@ def bake_scene(
         light_files=tuple(light_files or ()),
         eclipse=eclipse,
         moonlight=moonlight,
-        star_illuminance=starlight.get(STAR_ILLUMINANCE),
+        night=night,
     )
+
+
+def _write_lights(
+    light_files: Sequence[Path],
+    described: MapLight,
+    paths: Sequence[Path],
+    files: WholeFiles,
+    attributes: Mapping[str, Attribute],
+) -> None:
+    from skybake.sidecar.light_file import write_light_files
+
+    time = attributes.get("skybake:time")
+    write_light_files(light_files, described, paths, files, time=time)
+
+
+def _bands(scene: Scene, picture: PictureSettings | None) -> Bands | None:
+    """Return what the map holds besides what an eye sees, or instead; None if nothing.
+
+    Raises
+    ------
+    InputError
+        If the map, or its picture, needs what the world has not.
+    """
+    if picture is not None and picture.show != "light":
+        from skybake.image.polarised import check_polarisation
+
+        check_polarisation(scene.planet, scene.settings, "show")
+    if scene.settings.sensor.is_eye:
+        return None
+    from skybake.baking.bands import bands_of
+
+    return bands_of(scene)
+
+
+def _rasters(
+    scene: Scene, bands: Bands | None, canvases: Sequence[Canvas]
+) -> tuple[Scene, list[Raster]]:
+    """Return the scene in the map's R, G and B, and its pictures."""
+    if bands is not None:
+        return bands.scene, bands.rasters(canvases)
+    return scene, [Raster(scene, canvas) for canvas in canvases]
+
+
+def _spec(
+    raster: Raster,
+    *,
+    settings: MapSettings,
+    stored: PixelType,
+    attributes: Mapping[str, Attribute],
+    bands: Bands | None,
+) -> MapSpec:
+    encoding = settings.encoding
+    spec = MapSpec(
+        raster.canvas.width,
+        raster.canvas.height,
+        encoding.space,
+        encoding.white_luminance,
+        pixel=stored,
+        compression=encoding.compression,
+        envmap=raster.canvas.envmap,
+        states_exposure=not encoding.omit_exposure,
+        attributes=attributes,
+    )
+    return spec if bands is None else bands.spec(spec)
 
 
 def _from_below(scene: Scene) -> tuple[float, float] | None:

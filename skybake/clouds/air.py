@@ -73,7 +73,7 @@ class ClearAir:
         Half the angle of the sun's disc. [rad]
     workers : Workers, optional
         Threads that do the work.
-    method : {"full", "hillaire"}, optional
+    method : {"full", "scalar", "hillaire"}, optional
         By which the light over a bright ground is solved for.
 
     Notes
@@ -186,7 +186,7 @@ class ClearAir:
     def _grounds(self) -> tuple[Atmosphere, Atmosphere]:
         """The air over its own ground and over a bright one."""
         medium = self.atmosphere.medium
-        if self.method == "full":
+        if self.method != "hillaire":
             # Hillaire's closure lets no light of the sky come back from the ground: at a low sun
             # two thirds of what a bright one adds.
             ground = np.full_like(medium.ground_albedo, BRIGHT)

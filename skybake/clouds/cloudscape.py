@@ -22,18 +22,11 @@ from skybake.clouds.compose import compose
 from skybake.clouds.dimming import Dimming, dimming_by
 from skybake.clouds.directions import fill_places, node_directions, unit_vectors
 from skybake.clouds.footprint import rays_per_side, see_pixels
-from skybake.clouds.kept_light import kept_light, light_key
-from skybake.clouds.layer import (
-    SolvedLayer,
-    Surroundings,
-    channels_to_wavelengths,
-    reflectance_of,
-    solve_layer,
-)
+from skybake.clouds.kept_light import KeptLight, keep_light, light_key, read_light
+from skybake.clouds.layer import SolvedLayer, channels_to_wavelengths
 from skybake.clouds.march import Marching
-from skybake.clouds.particles import divide_phase
 from skybake.clouds.sight import Eye, dim_rays, light_rays
-from skybake.clouds.suns import suns_over
+from skybake.clouds.solve import nearest_sun, solve_layers
 from skybake.clouds.unlit import Layer
 from skybake.jit.arguments import flatten
 from skybake.jit.workers import Workers
@@ -111,41 +104,18 @@ class Cloudscape:
     @cached_property
     def solved(self) -> list[SolvedLayer]:
         """The light of each layer, from the highest down."""
-        if not self._keeps_light:
-            return self._solve()
-        key = light_key(self.layers, self.air, self.altitude, self.sun, self.weights)
-        return kept_light(key, self._solve)
+        if self._kept is not None:
+            return self._kept.layers
+        given = self.altitude, self.sun, self.weights
+        return solve_layers(self.layers, self.air, *given, self.workers)
 
-    def _solve(self) -> list[SolvedLayer]:
-        """Solve for the light of each layer.
+    @cached_property
+    def _kept(self) -> KeptLight | None:
+        return read_light(self._key) if self._keeps_light else None
 
-        A layer is lit by what those above leave on average, and stands over what those below
-        reflect.
-        """
-        particles = [divide_phase(each.phase, each.middle, each.order) for each in self.layers]
-        given = self.air, self.weights
-        reflects: list[Array] = []
-        for layer, particle in zip(reversed(self.layers), reversed(particles), strict=True):
-            beneath = reflects[-1] if reflects else None
-            reflects.append(
-                reflectance_of(layer.grid, particle, *given, self.sun, beneath, self.workers)
-            )
-        reflects.reverse()
-        out: list[SolvedLayer] = []
-        sun_share = sky_ratio = np.ones(self.weights.shape[1])
-        for k, (layer, particle) in enumerate(zip(self.layers, particles, strict=True)):
-            ground = reflects[k + 1] if k + 1 < len(reflects) else None
-            around = Surroundings(sun_share, sky_ratio, ground)
-            suns = suns_over(self.sun, self.air.radius, self.altitude, layer.field.top)
-            own = int(np.argmin(np.abs(suns[:, 2] - self.sun[2])))
-            solved = solve_layer(
-                layer.grid, particle, *given, suns, own, around, reflects[k], self.workers
-            )
-            at = self._nearest(solved)
-            sun_share = sun_share * float(solved.leaving[at].mean())
-            sky_ratio = solved.down[at] / np.maximum(solved.down_clear[at], 1e-300)
-            out.append(solved)
-        return out
+    @cached_property
+    def _key(self) -> str:
+        return light_key(self.layers, self.air, self.altitude, self.sun, self.weights)
 
     @property
     def eye(self) -> Eye:
@@ -160,12 +130,9 @@ class Cloudscape:
     @cached_property
     def dimming(self) -> Dimming:
         """How clouds change the diffuse light in and below them."""
-        at = [self._nearest(solved) for solved in self.solved]
+        at = [nearest_sun(solved, self.sun) for solved in self.solved]
         grids = [layer.grid for layer in self.layers]
         return dimming_by(grids, self.solved, at, self.air, self.weights, self.sun)
-
-    def _nearest(self, solved: SolvedLayer) -> int:
-        return int(np.argmin(np.abs(solved.light.sun_mu - self.sun[2])))
 
     @property
     def reflectance(self) -> Array:
@@ -237,8 +204,13 @@ class Cloudscape:
     @cached_property
     def nodes(self) -> tuple[Floats, Floats, Array]:
         """Light of the air in all directions: `lit`, `through` and distances at nodes."""
+        if self._kept is not None:
+            return self._kept.lit, self._kept.through, self._kept.distance
         rays, distance = self.node_rays
-        return *self.lit(rays, self.dimming), distance
+        made = *self.lit(rays, self.dimming), distance
+        if self._keeps_light:
+            keep_light(self._key, KeptLight(self.solved, *made))
+        return made
 
     @cached_property
     def node_rays(self) -> tuple[AirRays, Array]:

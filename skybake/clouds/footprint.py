@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -17,7 +16,7 @@ from skybake.optics.medium import Array
 
 Floats = npt.NDArray[np.float32]
 
-_MOST = 3
+_MOST = 3.0
 """Rays along each side of a pixel at most."""
 
 _RESOLVED = 3.0
@@ -29,8 +28,8 @@ _BLUR = 0.15
 extinction of sharp ones, but hide more."""
 
 
-def rays_per_side(field: CloudField, altitude: float, pixel: float) -> int:
-    """Return how many rays along each side of a pixel see a layer.
+def rays_per_side(field: CloudField, altitude: float, pixel: float) -> float:
+    """Return how many rays along each side of a pixel see a layer, on average over pixels.
 
     Parameters
     ----------
@@ -42,9 +41,9 @@ def rays_per_side(field: CloudField, altitude: float, pixel: float) -> int:
         Angle of a pixel's side. [rad]
     """
     if field.kind != SURFACE:
-        return 1
+        return 1.0
     footprint = max(altitude - field.top, 0.0) * pixel
-    return min(max(math.ceil(footprint / (_RESOLVED * field.largest_blur)), 1), _MOST)
+    return min(max(footprint / (_RESOLVED * field.largest_blur) + 0.5, 1.0), _MOST)
 
 
 def see_pixels(
@@ -55,10 +54,49 @@ def see_pixels(
     marching: Marching,
     out: tuple[Floats, Floats],
     workers: Workers,
+    count: float,
+    ends: Array | None = None,
+) -> None:
+    """Do what `see_layer` does, with the mean of `count` times `count` rays for each direction.
+
+    Between two whole numbers some directions have the lower and others the higher, so that no edge
+    shows where it changes.
+    """
+    least = int(count)
+    has_more = _scattered(directions) < count - least
+    for is_chosen, own in ((~has_more, least), (has_more, least + 1)):
+        if is_chosen.all():
+            _see_several(field, light, eye, directions, marching, out, workers, own, ends)
+        elif is_chosen.any():
+            part = np.empty_like(out[0][is_chosen]), np.empty_like(out[1][is_chosen])
+            chosen = np.ascontiguousarray(directions[is_chosen])
+            nearest = None if ends is None else np.ascontiguousarray(ends[is_chosen])
+            _see_several(field, light, eye, chosen, marching, part, workers, own, nearest)
+            out[0][is_chosen], out[1][is_chosen] = part
+
+
+def _scattered(directions: Array) -> Array:
+    """Return a number in [0, 1) for each direction, without any order but always the same."""
+    words = np.ascontiguousarray(directions, np.float64).view(np.uint64)
+    mixed = words[:, 0] ^ (words[:, 1] << np.uint64(1)) ^ (words[:, 2] << np.uint64(2))
+    # The finalizer of Stafford's variant 13 (SplitMix64).
+    mixed = (mixed ^ (mixed >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    mixed = (mixed ^ (mixed >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    share: Array = ((mixed ^ (mixed >> np.uint64(31))) >> np.uint64(11)) * 2.0**-53
+    return share
+
+
+def _see_several(
+    field: CloudField,
+    light: LayerLight,
+    eye: Eye,
+    directions: Array,
+    marching: Marching,
+    out: tuple[Floats, Floats],
+    workers: Workers,
     count: int,
     ends: Array | None = None,
 ) -> None:
-    """Do what `see_layer` does, with the mean of `count` times `count` rays for each direction."""
     finer = marching._replace(pixel=marching.pixel / count)
     above = eye.altitude - field.top
     if field.kind == SURFACE and above > 0.0:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from skybake.clouds.air import ClearAir
 from skybake.clouds.layer import SolvedLayer
@@ -17,35 +18,49 @@ from skybake.jit.tables import LARGEST_LIGHTS, read_tables, write_tables
 from skybake.optics.medium import Array
 from skybake.scattering.atmosphere import atmosphere_key
 
+Floats = npt.NDArray[np.float32]
+
 _LIGHT = "light."
+_OF_AIR = ("lit", "through", "distance")
 _OF_LAYER = ("leaving", "mean_radiance", "down", "down_clear", "reflectance")
 
 
-def kept_light(key: str, solve: Callable[[], list[SolvedLayer]]) -> list[SolvedLayer]:
-    """Return light that was solved for before, or solve for it and keep it.
+class KeptLight(NamedTuple):
+    """The light of layers, from the highest down, and that of the air around them.
 
-    Parameters
+    Attributes
     ----------
-    key : str
-        Of `light_key`.
-    solve : callable
-        Solves for the light of all layers.
+    layers : list of SolvedLayer
+        Of all suns.
+    lit, through : ndarray of float32
+        Of `fill_lit` at the nodes of an observer's directions.
+    distance : ndarray of float64, shape (node, stretch + 1)
+        Along them. [km]
     """
+
+    layers: list[SolvedLayer]
+    lit: Floats
+    through: Floats
+    distance: Array
+
+
+def read_light(key: str) -> KeptLight | None:
+    """Return the light of a name that `light_key` gave; None where none is kept."""
     arrays = read_tables(key)
-    if arrays is not None:
-        return _from_arrays(arrays)
-    solved = solve()
-    arrays = _to_arrays(solved)
-    # What exceeds the room for all would be removed at once.
+    return None if arrays is None else _from_arrays(arrays)
+
+
+def keep_light(key: str, light: KeptLight) -> None:
+    """Keep light on disk, unless it exceeds the room for all."""
+    arrays = _to_arrays(light)
     if sum(np.asarray(each).nbytes for each in arrays.values()) < LARGEST_LIGHTS:
         write_tables(key, arrays)
-    return solved
 
 
 def light_key(
     layers: Sequence[Layer], air: ClearAir, altitude: float, sun: Array, weights: Array
 ) -> str:
-    """Name the light of layers by all that it depends on but the code.
+    """Name the light of layers and of the air by all that it depends on but the code.
 
     Parameters
     ----------
@@ -58,8 +73,8 @@ def light_key(
     given += [altitude, sun, weights, np.__version__]
     for layer in layers:
         grid = layer.grid
-        given += [layer.order, layer.field.top, grid.base, grid.spacing, grid.extinction]
-        given += [layer.phase, layer.middle]
+        given += [layer.order, grid.base, grid.spacing, grid.extinction]
+        given += [layer.phase, layer.middle, *layer.field]
     digest = hashlib.sha256()
     for each in given:
         head = f"{each.shape}" if isinstance(each, np.ndarray) else repr(each)
@@ -69,9 +84,10 @@ def light_key(
     return f"{CLOUD_LIGHT_PREFIX}{digest.hexdigest()[:32]}"
 
 
-def _to_arrays(solved: list[SolvedLayer]) -> dict[str, Any]:
-    arrays: dict[str, Any] = {"layers": len(solved)}
-    for number, layer in enumerate(solved):
+def _to_arrays(light: KeptLight) -> dict[str, Any]:
+    arrays: dict[str, Any] = {"layers": len(light.layers)}
+    arrays |= {name: getattr(light, name) for name in _OF_AIR}
+    for number, layer in enumerate(light.layers):
         for name, value in layer.light._asdict().items():
             arrays[f"{number}.{_LIGHT}{name}"] = value
         for name in _OF_LAYER:
@@ -79,7 +95,7 @@ def _to_arrays(solved: list[SolvedLayer]) -> dict[str, Any]:
     return arrays
 
 
-def _from_arrays(arrays: dict[str, Any]) -> list[SolvedLayer]:
+def _from_arrays(arrays: dict[str, Any]) -> KeptLight:
     solved = []
     for number in range(int(arrays["layers"])):
         # Numbers are arrays without an axis, and kernels are compiled for numbers.
@@ -90,4 +106,4 @@ def _from_arrays(arrays: dict[str, Any]) -> list[SolvedLayer]:
         }
         parts = {name: arrays[f"{number}.{name}"] for name in _OF_LAYER}
         solved.append(SolvedLayer(LayerLight(**light), **parts))
-    return solved
+    return KeptLight(solved, *(arrays[name] for name in _OF_AIR))

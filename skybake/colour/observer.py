@@ -70,7 +70,39 @@ def xyz_weights(wavelengths: Array, star_wavelengths: Array, star_irradiance: Ar
     function that is 1 at node k and falls linearly to 0 at its neighbours. The
     fine structure of the star's light is thus kept, however few the nodes are.
     """
-    nodes, xyz_bar = load_observer()
+    return folding_weights(
+        wavelengths, star_wavelengths, star_irradiance, load_observer()[1], LUMINOUS_EFFICACY
+    )
+
+
+def folding_weights(
+    wavelengths: Array,
+    star_wavelengths: Array,
+    star_irradiance: Array,
+    curves: Array,
+    scale: float,
+) -> Array:
+    """Weights that fold a spectrum into what any responses make of it, see `xyz_weights`.
+
+    Parameters
+    ----------
+    wavelengths, star_wavelengths, star_irradiance
+        As of `xyz_weights`.
+    curves : ndarray, shape (471, channel)
+        Responses at 360 to 830, each 1. [nm]
+    scale : float
+        Factor of all weights.
+
+    Returns
+    -------
+    ndarray of float64, shape (wavelength, channel)
+
+    Raises
+    ------
+    ValueError
+        As of `xyz_weights`.
+    """
+    nodes, _ = load_observer()
     for name, given in (("wavelengths", wavelengths), ("star_wavelengths", star_wavelengths)):
         if len(given) == 0 or not np.all(np.diff(given) > 0.0):
             raise ValueError(f"{name} must ascend, got {given}")
@@ -79,8 +111,8 @@ def xyz_weights(wavelengths: Array, star_wavelengths: Array, star_irradiance: Ar
             f"star_wavelengths must cover {nodes[0]:g} to {nodes[-1]:g} nm, "
             f"got {star_wavelengths[0]:g} to {star_wavelengths[-1]:g} nm"
         )
-    power = LUMINOUS_EFFICACY * np.interp(nodes, star_wavelengths, star_irradiance)
+    power = scale * np.interp(nodes, star_wavelengths, star_irradiance)
     # Each column is one hat: interpolation of a unit vector, which is constant beyond the ends.
     hats = np.stack([np.interp(nodes, wavelengths, unit) for unit in np.eye(len(wavelengths))])
-    weights: Array = hats @ (power[:, None] * xyz_bar)
+    weights: Array = hats @ (power[:, None] * curves)
     return weights

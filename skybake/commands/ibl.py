@@ -18,6 +18,12 @@ from skybake.commands.options.lighting_settings import (
     program_from_options,
     sky_settings,
 )
+from skybake.commands.options.night import (
+    night_from_options,
+    night_needs,
+    night_options,
+    scaled_for_night,
+)
 from skybake.commands.options.observer import (
     altitude_option,
     moon_from_options,
@@ -29,7 +35,7 @@ from skybake.commands.options.observer import (
     sun_distance_option,
     sun_option,
 )
-from skybake.commands.options.rules import check_needs
+from skybake.commands.options.rules import check_needs, options_together, some_of
 from skybake.commands.options.times import moment_from_options, moment_needs, moment_options
 from skybake.commands.options.world import world_from_options, world_options
 from skybake.commands.printing.lighting_summary import print_json, print_summary
@@ -72,6 +78,7 @@ def _prefix(_: click.Context, __: click.Parameter, value: str | None) -> Path | 
 @sun_distance_option()
 @moon_options("--time", is_light=False)
 @altitude_option()
+@options_together(*some_of(night_options, "night", "airglow", "zodiacal", "light_pollution"))
 @clouds_options()
 @click.option(
     "--input",
@@ -118,6 +125,7 @@ def ibl(**options: Any) -> None:
         moment_needs(context),
         sun_distance_needs(options, is_timed=is_timed, time="--time"),
         moon_needs(options, is_timed=is_timed, time="--time"),
+        night_needs(options, is_timed=is_timed, time="--time"),
         lighting_needs(options, program),
     )
     maps, form = lighting_from_options(options, program)
@@ -163,6 +171,8 @@ def _of_sky(
         program,
         maps.source_edge,
         **positions(options, moment),
+        # As points they are too many, and too faint to light anything.
+        night=night_from_options({**options, "stars": "exclude"}, moment),
     )
 
     from skybake.baking import default_path, late_kernels
@@ -175,7 +185,7 @@ def _of_sky(
     distance = sun_distance(planet, moment, options["sun_distance"])
     moon = moon_from_options(options, planet, moment, distance)
     lighting = replace(settings.lighting, sun_distance=distance, moon=moon)
-    settings = replace(settings, lighting=lighting)
+    settings = scaled_for_night(options, replace(settings, lighting=lighting))
     output = options["output"] or _default_prefix(default_path(planet, settings))
     if not options["quiet"]:
         announce(output)

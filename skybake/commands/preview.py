@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from skybake.commands.memory import check_memory
-from skybake.commands.options.previews import look_options, picture_from_options
+from skybake.commands.options.previews import look_options, picture_from_options, vision_option
 from skybake.commands.options.values import exposure, with_suffix
 from skybake.commands.printing.pictures import picture_line
 from skybake.errors import InputError
@@ -32,6 +32,7 @@ from skybake.errors import InputError
     show_default=True,
     help="Exposure value at ISO 100; auto meters the sky as a camera does.",
 )
+@vision_option
 @look_options
 @click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
 def preview(

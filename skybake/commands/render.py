@@ -24,6 +24,7 @@ from skybake.commands.options.night import (
     night_from_options,
     night_needs,
     night_options,
+    scaled_for_night,
 )
 from skybake.commands.options.observer import (
     altitude_option,
@@ -43,6 +44,7 @@ from skybake.commands.options.previews import (
     preview_options,
 )
 from skybake.commands.options.rules import check_needs, is_given
+from skybake.commands.options.sensor import sensor_from_options, sensor_needs, sensor_options
 from skybake.commands.options.times import moment_from_options, moment_needs, moment_options
 from skybake.commands.options.world import world_from_options, world_options
 from skybake.commands.printing import render_summary
@@ -89,6 +91,7 @@ class RequestedMap(NamedTuple):
 @lst_option
 @clouds_options()
 @map_options
+@sensor_options
 @click.option(
     *("-o", "--output"),
     metavar="FILE",
@@ -160,6 +163,7 @@ def requested_map(
         night_needs(options, is_timed=is_timed, time="--time"),
         moonlight_needs(options, is_timed=is_timed, time="--time"),
         map_needs(options),
+        sensor_needs(options),
         preview_needs(options),
     )
     leaves_disc_out = bool(options["lights"]) and not is_given(context, "sun_disc")
@@ -172,6 +176,7 @@ def requested_map(
         options,
         **where,
         night=night_from_options(options, moment),
+        sensor=sensor_from_options(options),
         moonlight=moonlight_from_options(options, moment, where),
     )
 
@@ -182,7 +187,7 @@ def requested_map(
     distance = sun_distance(planet, moment, options["sun_distance"])
     moon = moon_from_options(options, planet, moment, distance)
     lighting = replace(settings.lighting, sun_distance=distance, moon=moon)
-    settings = replace(settings, lighting=lighting)
+    settings = scaled_for_night(options, replace(settings, lighting=lighting))
     return RequestedMap(planet, settings, moment, leaves_disc_out)
 
 

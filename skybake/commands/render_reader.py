@@ -20,7 +20,7 @@ from skybake.commands.options.described import (
 )
 from skybake.commands.options.files import check_within
 from skybake.commands.options.place import day_from_options, place_from_options
-from skybake.commands.options.previews import picture_from_options
+from skybake.commands.options.previews import picture_from_options, preview_needs
 from skybake.commands.options.times import moment_from_options
 from skybake.commands.options.world import changes_from_options, world_from_options
 from skybake.commands.render import render, requested_map
@@ -35,7 +35,6 @@ if TYPE_CHECKING:
 
     from skybake.preset import Planet
 
-_LOOKS = ("preview-ev", "white-balance", "view")
 _OF_DAY = ("preset", "lat", "lon", "site", "ls", "tz", "date", "altitude", "refraction")
 _KEPT_WORLDS = 8
 _VIEW_TITLES = {"aces1": "ACES 1.3", "aces2": "ACES 2.0"}
@@ -93,6 +92,7 @@ class RenderReader:
                 options["preset"],
                 changes_from_options(context),
                 None if moment is None else moment.attributes,
+                self._has_looks(state),
             )
 
     def read_one(self, option: str, text: str) -> dict[str, Any]:
@@ -151,9 +151,14 @@ class RenderReader:
                 words += _words(self._option(name), state.options[name])
             elif name == "set":
                 words += [f"--set={key}={text}" for key, text in state.changes.items()]
-        if any(name in state.options for name in _LOOKS):
+        if self._has_looks(state):
             words.append("--preview")
         return words
+
+    def _has_looks(self, state: State) -> bool:
+        """Whether an option says how a preview looks, which needs one."""
+        looks = preview_needs({"preview": None})
+        return any((self._options[name].name or "") in looks for name in state.options)
 
     def _option(self, name: str) -> click.Option:
         if name not in self._options:
@@ -163,7 +168,8 @@ class RenderReader:
     def _check_files(self, state: State) -> None:
         for name, text in typed_texts(state):
             if name != "preset" or text != self._preset:
-                check_within(self._folder, name, text)
+                with _messages(name):
+                    check_within(self._folder, name, text)
         for key, text in state.changes.items():
             check_within(self._folder, "set", f"{key}={text}")
 

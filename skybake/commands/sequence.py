@@ -22,7 +22,12 @@ from skybake.commands.options.emit import (
 )
 from skybake.commands.options.maps import map_needs, map_options, map_settings
 from skybake.commands.options.moonlight import moonlight_needs, moonlight_of_sequence
-from skybake.commands.options.night import night_from_options, night_needs, night_options
+from skybake.commands.options.night import (
+    is_scale_open,
+    night_from_options,
+    night_needs,
+    night_options,
+)
 from skybake.commands.options.observer import (
     altitude_option,
     moon_by_place,
@@ -41,6 +46,7 @@ from skybake.commands.options.previews import (
 )
 from skybake.commands.options.products import product_options, products_from_options
 from skybake.commands.options.rules import Needs, check_needs, usage_faults
+from skybake.commands.options.sensor import sensor_from_options, sensor_needs, sensor_options
 from skybake.commands.options.times import span_from_options, span_needs, span_options
 from skybake.commands.options.world import changes_from_options, world_options
 from skybake.commands.printing import sequence_summary
@@ -79,6 +85,7 @@ SOME_FAILED = 3
     help="Bake only these of them, as one machine of a farm does.",
 )
 @map_options
+@sensor_options
 @click.option(
     "--exposure-curve",
     metavar="FILE.csv",
@@ -163,6 +170,7 @@ def sequence(**options: Any) -> None:
         night_needs(options, is_timed=is_timed, time=times),
         moonlight_needs(options, is_timed=is_timed, time=times),
         map_needs(options),
+        sensor_needs(options),
         preview_needs(options),
         emit_needs(options),
         _needs(options),
@@ -228,6 +236,7 @@ def _plan_from_options(context: click.Context) -> Plan:
         clouds_quality=options["clouds_quality"],
         moon=moon_by_place(options),
         night=night_from_options(options),
+        sensor=sensor_from_options(options),
         moonlight=moonlight_of_sequence(options),
     )
     changes = changes_from_options(context)
@@ -251,6 +260,7 @@ def _plan_from_options(context: click.Context) -> Plan:
             cloud_time=options["cloud_time"],
             output=options["output"],
             preview=options["preview"] == BESIDE or options["preview"] or False,
+            night_scale=is_scale_open(options) and options["exposure_curve"] is None,
         )
     check_clouds(context, *plan.planets)
     return plan

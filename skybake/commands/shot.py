@@ -32,6 +32,7 @@ from skybake.commands.options.night import (
     night_from_options,
     night_needs,
     night_options,
+    scaled_for_night,
 )
 from skybake.commands.options.observer import (
     altitude_option,
@@ -121,7 +122,7 @@ _STORED = (
     help="Picture to look at.",
 )
 @click.option("--no-preview", is_flag=True, help="Write no picture to look at.")
-@options_together(*some_of(preview_options, "preview_ev", "white_balance", "view"))
+@options_together(*some_of(preview_options, "preview_ev", "vision", "white_balance", "view"))
 @click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object.")
 @click.option("-q", "--quiet", is_flag=True, help="Print no progress and no summary.")
 def shot(**options: Any) -> None:
@@ -175,7 +176,7 @@ def shot(**options: Any) -> None:
     distance = sun_distance(planet, moment, options["sun_distance"])
     moon = moon_from_options(options, planet, moment, distance)
     lighting = replace(settings.lighting, sun_distance=distance, moon=moon)
-    settings = replace(settings, lighting=lighting)
+    settings = scaled_for_night(options, replace(settings, lighting=lighting))
     output = options["output"] or default_path(planet, settings)
     preview = None if options["no_preview"] else options["preview"] or preview_beside(output)
     quiet = options["quiet"]
@@ -215,7 +216,7 @@ def _needs(options: Mapping[str, Any]) -> Needs:
         ),
         **dict.fromkeys(("camera_units", "camera_up"), (has_camera, "needs --camera")),
         **dict.fromkeys(
-            ("preview", "preview_ev", "white_balance", "view"),
+            ("preview", "preview_ev", "vision", "white_balance", "view"),
             (has_preview, "cannot be combined with --no-preview"),
         ),
         **dict.fromkeys(

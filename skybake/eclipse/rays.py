@@ -142,7 +142,9 @@ class _Room:
         if field.altitude.size > 1:
             scratch = allocate_scratch(field, fans)
             peaks = one.horizon_peaks
-            add_diffuse(field, self._moments, peaks, scaled, *batch, self.diffuse, scratch, diffuse)
+            light = field, self._moments, peaks, scaled
+            stokes = np.empty((0, 2 * diffuse.shape[1]), np.float32)
+            add_diffuse(*light, *batch, self.diffuse, scratch, diffuse, stokes)
         if one.aureole.source.shape[2] > 0:
             aureole = allocate_aureole_scratch(scaled)
             add_aureole(one.aureole, field, scaled, *batch, self.sunlit, aureole, diffuse)

@@ -17,6 +17,7 @@ from skybake.environment.faces import TEMPLATE, face_files
 from skybake.environment.tags import file_space, file_white, has_space
 from skybake.errors import InputError
 from skybake.formats.reader import ImageFile
+from skybake.formats.spec import CAMERA
 from skybake.projection import find_projection
 from skybake.projection.chart import Projection, size_text
 from skybake.projection.cubemap import Cubemap, parse_face_names
@@ -73,6 +74,10 @@ def load_environment(
     laid_out = _projection(files, images, projection)
     attributes = images[0].attributes
     known = find_colour_space(space) if isinstance(space, str) else space
+    if known is None and CAMERA in attributes:
+        raise InputError(
+            f"{files[0]}: colours must be those of an eye, got a camera's ({attributes[CAMERA]})"
+        )
     if known is None and has_space(attributes):
         known = file_space(files[0], attributes)
     pixels = tuple(
@@ -169,6 +174,8 @@ def _warnings(
     space: ColourSpace | None,
 ) -> list[str]:
     found = []
+    if "spectralLayoutVersion" in images[0].attributes:
+        found.append(f"{files[0]}: the spectrum is left out, and R, G and B are read")
     for file, image, pixels in zip(files, images, pictures, strict=True):
         count = _negative(pixels, space, is_ours=bool(file_recipe(image.attributes)))
         if count:

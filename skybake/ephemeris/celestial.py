@@ -43,13 +43,19 @@ class CelestialFrame:
     latitude : float
         Of the observer's vertical. [rad]
     year : float
-        Julian year, on which proper motion, precession, nutation and aberration depend.
+        Julian year, on which proper motion, precession, nutation and aberration depend; J2000
+        if there is no date.
     """
 
     planet: str
     sidereal_time: float
     latitude: float
     year: float = J2000
+
+    @property
+    def has_date(self) -> bool:
+        """Whether it is that of a date, on which planets are somewhere."""
+        return self.year != J2000
 
     def directions(self, places: Array, motions: Array | None = None) -> Array:
         """Return where stars are seen, without refraction.
@@ -76,6 +82,16 @@ class CelestialFrame:
             east, north = _tangents(places[:, 0], places[:, 1])
             moved = motions * (self.year - J2000)
             vectors = vectors + moved[:, :1] * east + moved[:, 1:] * north
+        return self.seen(vectors)
+
+    def seen(self, vectors: Array) -> Array:
+        """Return where what is in directions of J2000 is seen, as of `directions`.
+
+        Parameters
+        ----------
+        vectors : ndarray of float64, shape (n, 3)
+            Of any length, in axes of J2000.
+        """
         if self.planet == "earth":
             vectors = _normalised(vectors) + _velocity_of_earth(self._centuries)
         turned: Array = _normalised(vectors) @ self.rotation.T
@@ -99,6 +115,13 @@ class CelestialFrame:
     @property
     def _centuries(self) -> float:
         return (self.year - J2000) / 100.0
+
+
+def to_ecliptic_of_date(year: float) -> Array:
+    """Matrix from axes of J2000 to those of the ecliptic and the mean equinox of a Julian year."""
+    t = (year - J2000) / 100.0
+    matrix: Array = _about_x(_mean_obliquity(t)) @ _precession(t)
+    return matrix
 
 
 def _unit_vectors(right_ascension: Array, declination: Array) -> Array:
@@ -148,6 +171,11 @@ def _precession(t: float) -> Array:
     return _about_z(-z * _ARCSECOND) @ _about_y(theta * _ARCSECOND) @ _about_z(-zeta * _ARCSECOND)
 
 
+def _mean_obliquity(t: float) -> float:
+    """Of the ecliptic, t in Julian centuries. [rad]"""
+    return _OBLIQUITY - math.radians(0.0130042) * t
+
+
 def _nutation(t: float) -> Array:
     """Matrix from the mean equator of date to the true one.
 
@@ -168,7 +196,7 @@ def _nutation(t: float) -> Array:
         + 0.10 * math.cos(2.0 * moon)
         - 0.09 * math.cos(2.0 * node)
     ) * _ARCSECOND
-    mean = _OBLIQUITY - math.radians(0.0130042) * t
+    mean = _mean_obliquity(t)
     return _about_x(-(mean + tilt)) @ _about_z(-longitude) @ _about_x(mean)
 
 

@@ -87,10 +87,28 @@ def sun_and_moons(
     vertical = planetographic_latitude(place.latitude)
     here = _observer(place.latitude, vertical, altitude)
     days = (time - _J2000) / timedelta(days=1) + tt_less_utc(time) / 86_400.0
-    moons = [(_phobos(days), PHOBOS_RADIUS), (_deimos(days), DEIMOS_RADIUS)]
     return east_north_up(sun, sidereal, vertical, here), [
-        (east_north_up(axes @ _on_orbit(orbit), sidereal, vertical, here), radius)
-        for orbit, radius in moons
+        (east_north_up(axes @ moon, sidereal, vertical, here), radius)
+        for _, moon, radius in moons_from_centre(days)
+    ]
+
+
+def moons_from_centre(days: float) -> list[tuple[str, Array, float]]:
+    """Return the moons' names, where they are from the centre of Mars, and their radii.
+
+    Parameters
+    ----------
+    days : float
+        Terrestrial time since J2000. [d]
+
+    Returns
+    -------
+    list of (str, ndarray of float64, float)
+        In axes of the Earth's equator of J2000 [km], and [km].
+    """
+    return [
+        ("phobos", _on_orbit(_phobos(days)), PHOBOS_RADIUS),
+        ("deimos", _on_orbit(_deimos(days)), DEIMOS_RADIUS),
     ]
 
 

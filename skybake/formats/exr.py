@@ -103,8 +103,9 @@ def image_spec(spec: MapSpec) -> OpenImageIO.ImageSpec:
     # What OpenImageIO derives from `oiio:ColorSpace`, for which it would read a configuration
     # of colours in 30 ms.
     header["colorInteropID"] = spec.colour_space.interop_id
-    header.attribute("chromaticities", "float[8]", tuple(spec.colour_space.chromaticities))
-    header.attribute("adoptedNeutral", "float[2]", tuple(spec.colour_space.neutral))
+    if spec.colour_space.chromaticities:
+        header.attribute("chromaticities", "float[8]", tuple(spec.colour_space.chromaticities))
+        header.attribute("adoptedNeutral", "float[2]", tuple(spec.colour_space.neutral))
     if spec.white_luminance is not None:
         header.attribute("whiteLuminance", "float", spec.white_luminance)
     for key, value in {"DateTime": UNDATED, "Software": "skybake", **spec.attributes}.items():

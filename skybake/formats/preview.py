@@ -83,7 +83,13 @@ def write_preview(
 
 
 def write_picture(
-    path: Path, width: int, height: int, bands: Iterable[npt.NDArray[np.uint8]]
+    path: Path,
+    width: int,
+    height: int,
+    bands: Iterable[npt.NDArray[np.uint8]],
+    *,
+    texts: Mapping[str, str] | None = None,
+    files: WholeFiles | None = None,
 ) -> None:
     """Write code values of sRGB as PNG.
 
@@ -95,14 +101,21 @@ def write_picture(
         Size of the picture. [pixel]
     bands : iterable of ndarray of uint8, shape (row, width, 3)
         Rows after rows, from top to bottom.
+    texts : mapping of str to str, optional
+        What the file is to hold besides the picture.
+    files : WholeFiles, optional
+        The files that it is to appear with; by default it appears when it is written.
 
     Raises
     ------
     OutputError
         If the file cannot be written.
     """
+    if files is not None:
+        _write_png(path, files.add(path), (width, height), bands, texts)
+        return
     with replace_when_whole(path) as temporary:
-        _write_png(path, temporary, (width, height), bands)
+        _write_png(path, temporary, (width, height), bands, texts)
 
 
 @contextmanager

@@ -14,6 +14,12 @@ Attribute = str | int | float | tuple[float, ...]
 HALF_MAX = 65504.0
 """Largest finite half float."""
 
+CAMERA = "skybake:camera"
+"""Attribute of a map in the channels of a camera, which are in no space of an eye."""
+
+POLARIZER = "skybake:polarizer"
+"""Attribute of a map through a polarising filter: angle of its axis from the vertical. [deg]"""
+
 PIXELS = ("half", "float", "rgb9e5", "r11g11b10")
 """Types of stored values."""
 
@@ -38,7 +44,7 @@ class Tagged(Protocol):
 
     @property
     def chromaticities(self) -> tuple[float, ...]:
-        """CIE xy of red, green, blue and white."""
+        """CIE xy of red, green, blue and white; none of a camera's own channels."""
 
     @property
     def neutral(self) -> tuple[float, float]:

@@ -12,7 +12,12 @@ from skybake.ibl.files import FileForm, lighting_paths, write_lighting
 from skybake.ibl.lighting import light
 from skybake.ibl.settings import LightingMaps
 from skybake.ibl.surroundings import Surroundings, surroundings_of_scene
-from skybake.image.light import attributes_from_light, eclipse_attributes, light_of_scene
+from skybake.image.light import (
+    attributes_from_light,
+    eclipse_attributes,
+    light_of_scene,
+    night_attributes,
+)
 from skybake.image.recipe import recipe_attributes
 from skybake.image.scene import Scene
 from skybake.jit.workers import Workers
@@ -92,6 +97,7 @@ def bake_lighting(
     stated = {
         **attributes_from_light(light_of_scene(scene)),
         **eclipse_attributes(scene),
+        **night_attributes(scene),
         **recipe_attributes(scene.planet, scene.settings),
         **(attributes or {}),
     }

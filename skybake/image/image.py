@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from skybake.errors import InputError
 from skybake.formats.preview import DEFAULT_VIEW, png_bytes
 from skybake.image.layers import Pixels
 from skybake.image.light import (
@@ -16,7 +17,7 @@ from skybake.image.light import (
     eclipse_attributes,
     light_of_scene,
     moon_attributes,
-    star_attributes,
+    night_attributes,
 )
 from skybake.image.meter import scene_ev, scene_white
 from skybake.image.picture import PREVIEW_WIDTH, CodeValues, code_values
@@ -125,7 +126,11 @@ def image_of_scene(scene: Scene, progress: Callable[[float], None] | None = None
     ------
     CancelledError
         If the scene's workers were stopped.
+    InputError
+        If other channels than those of an eye are asked for.
     """
+    if not scene.settings.sensor.is_eye:
+        raise InputError("sensor: an image holds what an eye sees; other channels are in files")
     light = light_of_scene(scene)
     pictures = []
     canvases = scene.settings.view.projection.canvases()
@@ -149,7 +154,7 @@ def image_of_scene(scene: Scene, progress: Callable[[float], None] | None = None
         metadata={
             **attributes_from_light(light),
             **eclipse_attributes(scene),
-            **star_attributes(scene),
+            **night_attributes(scene),
             **moon_attributes(scene),
             **recipe_attributes(scene.planet, scene.settings),
         },

@@ -24,10 +24,6 @@ _ATTRIBUTES = {
 }
 
 
-STAR_ILLUMINANCE = "skybake:starIlluminance"
-"""Attribute of maps with stars: of the horizontal by them. [lx]"""
-
-
 @dataclass(frozen=True, kw_only=True)
 class Light:
     """What light a map holds.
@@ -84,13 +80,13 @@ def eclipse_attributes(scene: Scene) -> dict[str, Attribute]:
     }
 
 
-def star_attributes(scene: Scene) -> dict[str, float]:
-    """Return the attributes of a map's files that tell of its stars, none without any."""
-    if scene.stars is None:
+def night_attributes(scene: Scene) -> dict[str, Attribute]:
+    """Return the attributes of a map's files that tell of its night, none by day."""
+    if scene.stars is None and scene.night_glow is None:
         return {}
-    from skybake.image.starry import star_illuminance
+    from skybake.image import night_figures
 
-    return {STAR_ILLUMINANCE: star_illuminance(scene, scene.stars)}
+    return night_figures.night_attributes(scene)
 
 
 def moon_attributes(scene: Scene) -> dict[str, Attribute]:

@@ -82,21 +82,29 @@ class Moonlit:
     @cached_property
     def xyz_weights(self) -> Array:
         """XYZ [cd m⁻²] is the radiance per unit irradiance of the whole Moon times these."""
+        return self._weights(self._share)
+
+    @cached_property
+    def irradiance(self) -> Array:
+        """Above the air, dimmed by an eclipse, shape (wavelength,). [W m⁻² nm⁻¹]"""
+        share = self._share(self.sky.wavelengths) * self._disc.eclipsed_share
+        light: Array = share * self.sky.irradiance
+        return light
+
+    def _share(self, wavelengths: Array) -> Array:
+        """Irradiance by the whole Moon over that of the sun at it."""
         moon = self.moon
         longitude, latitude = moon.sub_observer
         sun_longitude, _ = moon.sub_solar
-
-        def share(wavelengths: Array) -> Array:
-            return moon_share(
-                moon.phase_angle,
-                wavelengths,
-                moon.distance,
-                sun_longitude=sun_longitude,
-                latitude=latitude,
-                longitude=longitude,
-            )
-
-        return self._weights(share)
+        share: Array = moon_share(
+            moon.phase_angle,
+            wavelengths,
+            moon.distance,
+            sun_longitude=sun_longitude,
+            latitude=latitude,
+            longitude=longitude,
+        )
+        return share
 
     @cached_property
     def _earthshine_weights(self) -> Array:
@@ -124,7 +132,7 @@ class Moonlit:
         return rgb_from_xyz(encoding.space).T / encoding.white_luminance
 
     @cached_property
-    def _air_weights(self) -> Array:
+    def air_weights(self) -> Array:
         """XYZ of light by the Moon as a whole, dimmed by an eclipse."""
         weights: Array = self.xyz_weights * self._disc.eclipsed_share[:, None]
         return weights
@@ -132,7 +140,7 @@ class Moonlit:
     @cached_property
     def illuminance_above(self) -> float:
         """Of a plane above the air that faces it. [lx]"""
-        return float(self._air_weights[:, 1].sum())
+        return float(self.air_weights[:, 1].sum())
 
     @property
     def eclipsed_share(self) -> float:
@@ -144,10 +152,10 @@ class Moonlit:
     @cached_property
     def lights_air(self) -> bool:
         """Whether its scattered light can be seen beside that of sun and night."""
-        if self.moon.elevation < LOWEST and self._scene.sky.skylight.radius < self._top:
-            return False
         if self._scene.settings.moonlight.is_alone:
             return True
+        if self.moon.elevation < LOWEST and self._scene.sky.skylight.radius < self._top:
+            return False
         least = float((self._scene.clear_survey @ self._scene.luminance).min())
         return ZENITH_SHARE * self.illuminance_above > SEEN_SHARE * least
 
@@ -164,7 +172,7 @@ class Moonlit:
 
     @cached_property
     def _table(self) -> FoldedTable:
-        return self._stages.folded_table(self.sky, self._air_weights @ self._to_rgb)
+        return self._stages.folded_table(self.sky, self.air_weights @ self._to_rgb)
 
     def add(self, zenith: Array, azimuth: Array, footprint: Array | float, out: Pixels) -> None:
         """Add its scattered light to pixels, whose azimuths are counted from the sun."""
@@ -203,7 +211,7 @@ class Moonlit:
     def xyz(self) -> tuple[Array, Array]:
         """XYZ by the disc, on a plane that faces it and on the horizontal. [lx]"""
         normal, horizontal = self._passing
-        weights = self._air_weights
+        weights = self.air_weights
         if self._scene.cloudscape is not None:
             where = np.array([self.zenith]), np.array([self.moon.azimuth])
             weights = weights * self._scene.cloudscape.transmittance(*where)

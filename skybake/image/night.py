@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -25,6 +26,10 @@ BRIGHTEST = 100.0
 """Largest factor of the light of the sky between stars."""
 
 
+BRIGHTEST_CITY = 1.0
+"""Largest luminance of the zenith by lamps. [cd m⁻²]"""
+
+
 @dataclass(frozen=True)
 class Night:
     """Which stars are shown, and how they stand.
@@ -45,6 +50,10 @@ class Night:
         Of Earth, 1 at a mean solar flux; from 0 to `BRIGHTEST`.
     zodiacal : float
         Of sunlight that dust between the planets scatters, 1 as it is; from 0 to `BRIGHTEST`.
+    city : float
+        Luminance of the zenith by lamps of cities, from 0 to `BRIGHTEST_CITY`. [cd m⁻²]
+    city_azimuth : float or None
+        Compass bearing of the city; None for one all around. [rad]
     """
 
     frame: CelestialFrame | None = None
@@ -54,6 +63,8 @@ class Night:
     is_shown: bool = True
     airglow: float = 1.0
     zodiacal: float = 1.0
+    city: float = 0.0
+    city_azimuth: float | None = None
 
     def __post_init__(self) -> None:
         """Refuse what cannot be shown."""
@@ -71,10 +82,23 @@ class Night:
                     f"{name}: must be from 0 to {BRIGHTEST:g}, got {getattr(self, name):g}"
                 )
 
+        if not 0.0 <= self.city <= BRIGHTEST_CITY:
+            raise InputError(
+                f"light pollution: must be from 0 to {1e3 * BRIGHTEST_CITY:g}mcd, "
+                f"got {1e3 * self.city:g}mcd"
+            )
+        if self.city_azimuth is not None and not math.isfinite(self.city_azimuth):
+            raise InputError(f"light pollution: azimuth must be finite, got {self.city_azimuth}")
+
+    @property
+    def is_lit(self) -> bool:
+        """Whether it has any lights."""
+        return self.is_shown and self.frame is not None
+
     @property
     def shows_glow(self) -> bool:
         """Whether the sky between stars has a light of its own."""
-        return self.is_shown and self.frame is not None and self.stars != "only"
+        return self.is_lit and self.stars != "only"
 
     @property
     def is_plate(self) -> bool:
@@ -84,7 +108,7 @@ class Night:
     @property
     def shows_stars(self) -> bool:
         """Whether there can be any."""
-        return self.is_shown and self.frame is not None and self.stars != "exclude"
+        return self.is_lit and self.stars != "exclude"
 
     def recipe(self) -> dict[str, Any]:
         """All that decides the pixels, in human-readable units, fit for JSON."""
@@ -99,6 +123,16 @@ class Night:
             "vertical_latitude_deg": degrees(self.frame.latitude),
             "julian_year": self.frame.year,
             "stars_refracted": self.is_refracted,
+            **self._city_recipe(),
+        }
+
+    def _city_recipe(self) -> dict[str, Any]:
+        if self.city == 0.0:
+            return {}
+        azimuth = self.city_azimuth
+        return {
+            "light_pollution_cd_m2": self.city,
+            "light_pollution_azimuth_deg": None if azimuth is None else degrees(azimuth),
         }
 
 

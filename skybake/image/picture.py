@@ -15,6 +15,7 @@ from skybake.image.picture_settings import PictureSettings
 from skybake.image.raster import Raster
 from skybake.image.scene import Scene
 from skybake.image.settings import Encoding, View
+from skybake.image.vision import as_seen
 from skybake.projection import Perspective, Projection
 
 PREVIEW_WIDTH = 1024
@@ -45,11 +46,13 @@ def show_scene(
     ev: float,
     white: Array | None,
     projection: Projection,
+    vision: str = "camera",
     pixels: Pixels | None = None,
 ) -> None:
     """Make the preview of a scene, of its pixels in the projection if they are known."""
     encoding = scene.settings.encoding
     shown = _single(scene, projection) if pixels is None else pixels
+    shown = as_seen(shown, encoding.space, encoding.white_luminance, vision)
     show(balanced(shown, encoding.space, white), encoding.space, gain(encoding, ev))
 
 
@@ -59,7 +62,8 @@ def thumbnail(scene: Scene, ev: float, settings: PictureSettings, width: int) ->
     shown = view.projection if shot is None else shot.on_map(view.rotation)
     glance = _single(scene, shown.glance(width))
     white = scene_white(scene, settings)
-    return code_values(glance, scene.settings.encoding, ev, settings.view, white)
+    encoding = scene.settings.encoding
+    return code_values(glance, encoding, ev, settings.view, white, settings.vision)
 
 
 def code_values(
@@ -68,12 +72,14 @@ def code_values(
     ev: float,
     view: str = DEFAULT_VIEW,
     white: Array | None = None,
+    vision: str = "camera",
 ) -> CodeValues:
     """Code values of sRGB of scene-linear pixels, shape (row, column, 3).
 
     Light whose XYZ is `white` has no colour in them; None is D65.
     """
-    exposed = balanced(pixels, encoding.space, white) * np.float32(gain(encoding, ev))
+    seen = as_seen(pixels, encoding.space, encoding.white_luminance, vision)
+    exposed = balanced(seen, encoding.space, white) * np.float32(gain(encoding, ev))
     values = display_values(exposed, encoding.space, view)
     shown: CodeValues = np.rint(values * 255.0).astype(np.uint8)
     return shown
@@ -95,4 +101,11 @@ def gain(encoding: Encoding, ev: float) -> float:
 def _single(scene: Scene, projection: Projection) -> Pixels:
     """Light of a scene in the one picture of a projection."""
     (canvas,) = projection.canvases()
-    return Raster(scene, canvas).rows(0, canvas.height)
+    raster = Raster(scene, canvas)
+    light = raster.rows(0, canvas.height)
+    angle = scene.settings.sensor.polarizer
+    if angle is None:
+        return light
+    from skybake.image.polarised import through_filter
+
+    return through_filter(light, raster.band("stokes", 0, canvas.height), angle)

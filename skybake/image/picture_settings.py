@@ -7,10 +7,12 @@ from typing import Literal
 
 from skybake.errors import InputError
 from skybake.formats.preview import DEFAULT_VIEW, check_view
+from skybake.image.vision import check_vision
 from skybake.preset import Planet
 from skybake.projection import Perspective
 
 EV_WAYS = ("auto", "adapt")
+SHOWN = ("light", "dop", "aop")
 WHITE_BALANCES = ("auto", "none")
 COLDEST, HOTTEST = 1000.0, 25_000.0
 """Colour temperatures that a white balance may have. [K]"""
@@ -42,6 +44,11 @@ class PictureSettings:
         temperature [K]. None is none on Earth and auto on other worlds.
     shot : Perspective or None
         Show this view in place of the map's own layout.
+    vision : {"camera", "eye"}
+        Whether the dark looks as to a camera, or as to the eye, which sees less colour in it.
+    show : {"light", "dop", "aop"}
+        Show the light, or its degree or angle of linear polarisation, see
+        `skybake.image.polarisation_picture`.
 
     Raises
     ------
@@ -53,10 +60,15 @@ class PictureSettings:
     view: str = DEFAULT_VIEW
     white_balance: WhiteBalance | None = None
     shot: Perspective | None = None
+    vision: str = "camera"
+    show: str = SHOWN[0]
 
     def __post_init__(self) -> None:
         """Refuse what cannot be shown."""
         check_view(self.view)
+        check_vision(self.vision)
+        if self.show not in SHOWN:
+            raise InputError(f"show: must be one of {', '.join(SHOWN)}, got {self.show!r}")
         if isinstance(self.ev, str) and self.ev not in EV_WAYS:
             raise InputError(f"ev: must be a number or {' or '.join(EV_WAYS)}, got {self.ev!r}")
         if self.white_balance is not None and not _is_white_balance(self.white_balance):

@@ -24,7 +24,14 @@ def preview_texts(
         "skybake:view": picture.view,
         "skybake:whiteBalance": white_balance_text(white_balance_of(picture, planet)),
         "skybake:shot": "none" if picture.shot is None else shot_text(picture.shot),
+        **vision_text(picture.vision),
+        **({} if picture.show == "light" else {"skybake:show": picture.show}),
     }
+
+
+def vision_text(vision: str) -> dict[str, str]:
+    """Return the text chunk of a picture that does not look as to a camera."""
+    return {} if vision == "camera" else {"skybake:vision": vision}
 
 
 def white_balance_text(white_balance: WhiteBalance) -> str:

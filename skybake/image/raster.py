@@ -24,10 +24,11 @@ CHANNELS = {
     "transmittance": RGB,
     "moon": RGB,
     "stars": RGB,
+    "stokes": ("S1.R", "S1.G", "S1.B", "S2.R", "S2.G", "S2.B"),
 }
 """Layers that a raster fills: the sky with its clouds; the sun's disc; the clear sky, the sky with
 its clouds, and the share that they hide; the transmittance of the air to space; the Moon's disc;
-and stars."""
+stars; and the polarisation of the sky."""
 
 Evaluate = Callable[[np.ndarray, np.ndarray, np.ndarray], Pixels]
 
@@ -166,10 +167,18 @@ def _transmittance_pixels(scene: Scene, chart: Chart, first: int, last: int) -> 
     return _smooth_pixels(scene, chart, first, last, partial(evaluate_transmittance, scene))
 
 
+def _stokes_pixels(scene: Scene, chart: Chart, first: int, last: int) -> Pixels:
+    from skybake.image.polarised import evaluate_stokes
+
+    evaluate = _seen(scene, partial(evaluate_stokes, scene))
+    return _smooth_pixels(scene, chart, first, last, evaluate)
+
+
 _EVALUATE: dict[str, Callable[[Scene, Chart, int, int], Pixels]] = {
     "sky": sky_pixels,
     "apart": _apart_pixels,
     "transmittance": _transmittance_pixels,
+    "stokes": _stokes_pixels,
 }
 
 

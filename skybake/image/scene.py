@@ -21,7 +21,7 @@ from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.medium import Array
 from skybake.preset import Planet
 from skybake.sky.disc import Disc
-from skybake.sky.pixels import allocate_pixels, fill_directions
+from skybake.sky.pixels import allocate_pixels, blacken_negative, fill_directions
 from skybake.sky.sky import Sky
 from skybake.sky.table import FoldedTable
 
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from skybake.image.moonlit import Moonlit
     from skybake.image.night_glow import NightGlow
     from skybake.night.stars import Stars
+    from skybake.sky.stokes_table import FoldedStokes
 
 
 class Scene:
@@ -47,6 +48,8 @@ class Scene:
         Threads that do the work.
     stages : Stages, optional
         What makes the table that pixels read, and may keep it.
+    sky : Sky, optional
+        What is seen, if it is known.
     """
 
     def __init__(
@@ -55,18 +58,20 @@ class Scene:
         settings: MapSettings,
         workers: Workers = ALL_CPUS,
         stages: Stages | None = None,
+        sky: Sky | None = None,
     ) -> None:
         self.planet = planet
         self.settings = settings
         self.workers = workers
-        self._stages = stages or Stages()
-        self.sky = Sky(
+        self.stages = stages or Stages()
+        self.sky = sky or Sky(
             planet,
             settings.lighting.sun_elevation,
             settings.view.altitude,
             sun_azimuth=settings.lighting.sun_azimuth,
             sun_distance=settings.lighting.sun_distance,
             moon=settings.lighting.moon,
+            wavelengths=settings.sensor.colour_wavelengths(),
             method=settings.lighting.method,
             workers=workers,
         )
@@ -133,7 +138,7 @@ class Scene:
             time=self.settings.clouds.time,
             quality=self.settings.clouds.quality,
             workers=self.workers,
-            keeps_light=self._stages.keeps_light_of_clouds,
+            keeps_light=self.stages.keeps_light_of_clouds,
         )
 
     @cached_property
@@ -162,7 +167,14 @@ class Scene:
             return None
         from skybake.image.night_glow import glow_over
 
-        return glow_over(self, night.frame)
+        return glow_over(self, night.frame, self.stages)
+
+    @cached_property
+    def stokes(self) -> FoldedStokes:
+        """Linear polarisation of the sky, as tables of pixel values."""
+        from skybake.sky.stokes_table import fold_stokes
+
+        return fold_stokes(self.stages.stokes_table(self.sky), self.rgb_weights)
 
     @cached_property
     def moonlit(self) -> Moonlit | None:
@@ -172,7 +184,7 @@ class Scene:
             return None
         from skybake.image.moonlit import Moonlit
 
-        return Moonlit(self, shown.moon, self._stages)
+        return Moonlit(self, shown.moon, self.stages)
 
     def light_clouds(self) -> None:
         """Solve for the light of clouds, which takes longest, before pixels show them."""
@@ -203,16 +215,14 @@ class Scene:
     @property
     def _is_lit_by_night(self) -> bool:
         """Whether the sky has other light than the sun's."""
-        return self.night_glow is not None or (
-            self.moonlit is not None
-            and (self.moonlit.lights_air or self.settings.moonlight.is_alone)
-        )
+        has_moonlight = self.moonlit is not None and self.moonlit.lights_air
+        return has_moonlight or self.night_glow is not None
 
     @cached_property
     def _surveyed(self) -> Survey:
         return Survey(
             self.sky,
-            self._stages,
+            self.stages,
             rgb_weights=self.rgb_weights,
             xyz_weights=self.xyz_weights,
             luminance=self.luminance,
@@ -287,25 +297,22 @@ class Scene:
 
     def evaluate_clear(self, zenith: Array, azimuth: Array, footprint: Array | float) -> np.ndarray:
         """Pixel values of the sky without clouds, see `evaluate`."""
-        pixels = self._sunlit(zenith, azimuth, footprint)
-        if self.night_glow is not None:
-            self.night_glow.add(zenith, azimuth, footprint, pixels)
-        if self.moonlit is not None:
-            self.moonlit.add(zenith, azimuth, footprint, pixels)
-        return pixels
-
-    def _sunlit(self, zenith: Array, azimuth: Array, footprint: Array | float) -> np.ndarray:
         if self.settings.moonlight.is_alone:
             shape = np.broadcast_shapes(zenith.shape, azimuth.shape)
-            return np.zeros((*shape, 3), np.float32)
-        return self.without_negative(self._evaluate(self.table, zenith, azimuth, footprint))
+            pixels = np.zeros((*shape, 3), np.float32)
+        else:
+            pixels = self.without_negative(self._evaluate(self.table, zenith, azimuth, footprint))
+        for light in (self.night_glow, self.moonlit):
+            if light is not None:
+                light.add(zenith, azimuth, footprint, pixels)
+        return pixels
 
     def without_negative(self, pixels: np.ndarray) -> np.ndarray:
         """Set pixels of negative luminance, which are rounding, to 0, and return them."""
         weights = self.luminance.astype(np.float32)
-        # The least value is found 50 times as fast as luminances are.
+        # The least value is found faster than luminances are.
         if pixels.min(initial=0.0) < 0.0 or weights.min() < 0.0:
-            pixels[pixels @ weights < 0.0] = 0.0
+            blacken_negative(weights, pixels)
         return pixels
 
     def clouds_over(self, cloudscape: Cloudscape) -> CloudsOver:

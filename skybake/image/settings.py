@@ -14,6 +14,7 @@ from skybake.errors import InputError
 from skybake.formats.compression import parse_compression
 from skybake.image.moonlight import Moonlight
 from skybake.image.night import Night
+from skybake.image.sensor import Sensor
 from skybake.projection import Equirect, Projection, find_projection
 from skybake.sky.sky import METHODS
 from skybake.units import degrees, metres
@@ -80,7 +81,7 @@ class Lighting:
         Draw the disc without an edge, see `skybake.sky.drawn_disc.DrawnDisc`.
     sun_strength : float
         Factor of the disc's light, greater than 0; the sky keeps its own.
-    method : {"full", "hillaire", "march"}
+    method : {"full", "scalar", "hillaire", "march"}
         How light is transported, see `skybake.sky.sky.Sky`.
     moon : Moon or None
         What may be in front of the sun.
@@ -219,6 +220,8 @@ class MapSettings:
         Which stars are shown.
     moonlight : Moonlight
         Where the Moon stands as a light.
+    sensor : Sensor
+        What is recorded besides what an eye sees, or instead.
     """
 
     view: View = field(default_factory=View)
@@ -227,6 +230,7 @@ class MapSettings:
     clouds: Clouds = field(default_factory=Clouds)
     night: Night = field(default_factory=Night)
     moonlight: Moonlight = field(default_factory=Moonlight)
+    sensor: Sensor = field(default_factory=Sensor)
 
     def recipe(self, *, has_clouds: bool = False) -> dict[str, Any]:
         """All that decides the pixels, in human-readable units, fit for JSON.
@@ -263,6 +267,7 @@ class MapSettings:
             **(self.clouds.recipe() if has_clouds else {}),
             **self.night.recipe(),
             **self.moonlight.recipe(),
+            **self.sensor.recipe(),
         }
 
 
@@ -283,9 +288,9 @@ def map_settings(
     **values
         Attributes of `View`, `Lighting` and `Encoding`, such as ``sun_elevation=0.1``, of the
         named projection, such as ``layout="cross"``, ``cloud_time`` [s] and
-        ``clouds_quality``, see `Clouds`, ``night``, a `Night`, and ``moonlight``, a
-        `Moonlight`. With ``target="blender"``
-        what is not given is as that program needs it, and a rotation turns what it takes for north.
+        ``clouds_quality``, see `Clouds`, ``night``, a `Night`, ``moonlight``, a `Moonlight`, and
+        ``sensor``, a `Sensor`. With ``target="blender"`` what is not given is as that program
+        needs it, and a rotation turns what it takes for north.
 
     Raises
     ------
@@ -299,7 +304,7 @@ def map_settings(
     for name, kind in (("view", View), ("lighting", Lighting), ("encoding", Encoding)):
         names = {one.name for one in fields(kind)}
         parts[name] = {key: values.pop(key) for key in names & values.keys()}
-    night = values.pop("night", Night())
+    night, sensor = values.pop("night", Night()), values.pop("sensor", Sensor())
     moonlight = values.pop("moonlight", Moonlight())
     clouds = {own: values.pop(name) for name, own in _CLOUDS.items() if name in values}
     if isinstance(projection, str):
@@ -310,7 +315,7 @@ def map_settings(
         raise InputError(f"settings: {', '.join(given)} must be given by the projection itself")
     view = View(projection=projection, **parts["view"])
     lighting, encoding = Lighting(**parts["lighting"]), Encoding(**parts["encoding"])
-    return MapSettings(view, lighting, encoding, Clouds(**clouds), night, moonlight)
+    return MapSettings(view, lighting, encoding, Clouds(**clouds), night, moonlight, sensor)
 
 
 def _for_target(

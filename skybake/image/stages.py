@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from skybake.optics.medium import Array
 from skybake.sky.sky import Sky
 from skybake.sky.spectral_table import SpectralTable, fold_table
 from skybake.sky.table import FoldedTable
+
+if TYPE_CHECKING:
+    from skybake.night.air import NightAir
+    from skybake.sky.stokes_table import StokesTable
 
 
 class Stages:
@@ -29,6 +35,12 @@ class Stages:
         """Light around the observer in all wavelengths; the one stage that traces rays."""
         return sky.skylight.spectral_table(sky.source, finely=finely)
 
+    def stokes_table(self, sky: Sky) -> StokesTable:
+        """Linear polarisation around the observer in all wavelengths."""
+        from skybake.sky.stokes_table import stokes_table
+
+        return stokes_table(sky.skylight, sky.source, self.spectral_table(sky))
+
     def folded_table(self, sky: Sky, rgb_weights: Array, *, finely: bool = False) -> FoldedTable:
         """Light around the observer as pixel values.
 
@@ -42,3 +54,10 @@ class Stages:
             As of `skybake.sky.spectral_table.table_geometry`.
         """
         return fold_table(self.spectral_table(sky, finely=finely), sky.skylight.basis, rgb_weights)
+
+    def night_air(self, sky: Sky, *, has_airglow: bool, has_city: bool) -> NightAir:
+        """Return what of the night over the observer no hour changes."""
+        # By day there is none.
+        from skybake.night.air import NightAir
+
+        return NightAir(sky, has_airglow=has_airglow, has_city=has_city)

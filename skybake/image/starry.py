@@ -79,7 +79,7 @@ class StarSpots:
         encoding = scene.settings.encoding
         to_rgb = rgb_from_xyz(encoding.space).T / encoding.white_luminance
         light = star_xyz(scene, stars) @ to_rgb
-        spots = spread_points(chart, _turned(stars.vectors, scene.settings.view.rotation))
+        spots = spread_points(chart, turned(stars.vectors, scene.settings.view.rotation))
         order = np.argsort(spots.texel, kind="stable")
         texel = spots.texel[order]
         values = spots.weight[order, None] * light[spots.point[order]]
@@ -99,7 +99,7 @@ class StarSpots:
         return top - first, pixels.reshape(bottom - top, self._width, 3)
 
 
-def _turned(vectors: Array, rotation: float) -> Array:
+def turned(vectors: Array, rotation: float) -> Array:
     """Vectors in the axes of a map whose -Z looks to a bearing. [rad]"""
     if rotation == 0.0:
         return vectors

@@ -10,6 +10,7 @@ import numpy as np
 
 from skybake.errors import InputError
 from skybake.formats.raw_parts import RawPart, read_parts
+from skybake.formats.spec import POLARIZER
 from skybake.inspect.check_edges import edge_findings
 from skybake.inspect.check_light import light_findings
 from skybake.inspect.check_tags import part_space, tag_findings
@@ -118,7 +119,9 @@ def _findings(path: Path, part: RawPart, names: set[str]) -> Iterable[Finding]:
     if part.name != "sun":
         yield from edge_findings(seen)
     # The clear sky behind clouds is not the light that is stated.
-    if space is not None and not (part.name == "sky" and "clouds" in names):
+    # What a filter passes is not the light that is stated either.
+    is_filtered = POLARIZER in part.attributes
+    if space is not None and not is_filtered and not (part.name == "sky" and "clouds" in names):
         yield from light_findings(seen, part.attributes, space, part.name)
 
 

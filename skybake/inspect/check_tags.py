@@ -11,6 +11,7 @@ import numpy as np
 from skybake.colour.space import COLOUR_SPACES, ColourSpace, colour_space_from_tags
 from skybake.errors import InputError
 from skybake.formats.raw_parts import RawPart
+from skybake.formats.spec import CAMERA
 from skybake.inspect.finding import Finding
 
 _SAME = 2e-3
@@ -35,6 +36,8 @@ def tag_findings(part: RawPart) -> Iterator[Finding]:
 
 def part_space(part: RawPart) -> ColourSpace | None:
     """Return the colour space that a part states, or None if it is not one of ours."""
+    if CAMERA in part.attributes:
+        return None
     try:
         return colour_space_from_tags("", *_tags(part.attributes))
     except InputError:

@@ -19,6 +19,7 @@ from skybake.image.scene import Scene
 from skybake.image.settings import Clouds, Lighting, MapSettings, View
 from skybake.image.survey import DARK, ROUNDING
 from skybake.inspect.clouded import clouded_light
+from skybake.inspect.polarised import check_polarisation, stokes_columns
 from skybake.inspect.traced import traced_radiance
 from skybake.optics.medium import Array
 from skybake.preset import Planet
@@ -103,6 +104,7 @@ def probe(
     wavelengths: Array | None = None,
     per_irradiance: bool = False,
     illuminance: bool = False,
+    with_stokes: bool = False,
     method: str = "full",
     samples: int = 10_000,
     clouds: Clouds | None = None,
@@ -132,7 +134,9 @@ def probe(
         chromaticity.
     illuminance : bool, optional
         Repeat the illuminances by sun and sky in every row.
-    method : {"full", "hillaire", "march", "reference"}, optional
+    with_stokes : bool, optional
+        Add Stokes parameters and the degree and angle of linear polarisation.
+    method : {"full", "scalar", "hillaire", "march", "reference"}, optional
         `reference` traces paths and adds the standard errors.
     samples : int, optional
         Paths for each direction and wavelength of the reference.
@@ -174,6 +178,10 @@ def probe(
             columns[f"stderr_{wavelength:g}nm"] = errors[:, k] * scale[k]
     if not per_irradiance:
         columns |= _colour(planet, sky, directions, method, samples, seen, values)
+    if with_stokes:
+        check_polarisation(planet, sky)
+        paths = samples if method == REFERENCE else None
+        columns |= stokes_columns(sky, directions.zenith, directions.azimuth, scale, paths)
     if illuminance:
         columns |= _illuminance(planet, sky, directions, seen)
     out = io.StringIO()

@@ -6,7 +6,7 @@ from skybake.cloud_fields.build import build_field
 from skybake.optics.medium import Array
 from skybake.optics.phase import build_phase
 from skybake.preset import Planet
-from skybake.reference import cloudy, estimate
+from skybake.reference import cloudy, stokes
 from skybake.sky.sky import Sky
 
 
@@ -14,6 +14,8 @@ def traced_radiance(
     planet: Planet, sky: Sky, zenith: Array, azimuth: Array, samples: int, cloud_time: float
 ) -> tuple[Array, Array]:
     """Radiance per unit irradiance and its standard error.
+
+    Of clear skies it is that of polarised light, with clouds as if light were not polarised.
 
     Parameters
     ----------
@@ -34,9 +36,9 @@ def traced_radiance(
         [sr⁻¹]
     """
     if not planet.clouds:
-        return estimate.radiance(
-            sky.medium, sky.altitude, sky.sun_elevation, zenith, azimuth, samples=samples
-        )
+        place = sky.medium, sky.altitude, sky.sun_elevation
+        mean, error = stokes.stokes(*place, zenith, azimuth, samples=samples)
+        return mean[:, 0], error[:, 0]
     return cloudy.radiance(
         sky.medium,
         [build_field(layer, cloud_time) for layer in planet.clouds],

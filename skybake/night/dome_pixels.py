@@ -10,13 +10,13 @@ from skybake.jit.kernel import kernel
 
 
 @kernel
-def fill_dome(table, above, zenith_horizon, zenith, azimuth, footprint, first, last, out):
+def fill_dome(table, above, zenith_horizon, zenith, azimuth, footprint, first, last, spare, out):
     """Add light of a table to the rows first..last of pixels.
 
     Parameters
     ----------
     table : ndarray of float32, shape (row, bearing, 3)
-        As of `skybake.night.dome.NightDome`.
+        Light at the zenith angles of `skybake.night.air.row_zeniths`.
     above : int
         Rows above the horizon.
     zenith_horizon : float
@@ -26,39 +26,80 @@ def fill_dome(table, above, zenith_horizon, zenith, azimuth, footprint, first, l
         smoothed. [rad]
     first, last : int
         Rows of the pixels.
+    spare : ndarray of float32, shape (bearing + 1, 3)
+        Work space.
     out : ndarray of float32, shape (last - first, column, 3)
         Is added to.
     """
+    if zenith.shape[1] == 1 and footprint.shape[1] == 1 and azimuth.shape[0] == 1:
+        for i in range(first, last):
+            theta = zenith[min(i, zenith.shape[0] - 1), 0]
+            extent = footprint[min(i, footprint.shape[0] - 1), 0]
+            spare[:] = 0.0
+            for j in range(spare.shape[0]):
+                node = j if j < table.shape[1] else 0
+                _add_node(
+                    table, above, zenith_horizon, theta, extent, node, np.float32(1.0), spare[j]
+                )
+            _add_ring(spare, azimuth[0], out[i - first])
+        return
     for i in range(first, last):
         for j in range(out.shape[1]):
-            theta = zenith[i if zenith.shape[0] > 1 else 0, j if zenith.shape[1] > 1 else 0]
-            around = azimuth[i if azimuth.shape[0] > 1 else 0, j if azimuth.shape[1] > 1 else 0]
-            extent = footprint[
-                i if footprint.shape[0] > 1 else 0, j if footprint.shape[1] > 1 else 0
-            ]
-            over = (zenith_horizon - theta) / max(extent, 1e-12) + 0.5
-            over = min(max(over, 0.0), 1.0)
-            if over > 0.0:
-                x = 1.0 - math.sqrt(max(1.0 - min(theta, zenith_horizon) / zenith_horizon, 0.0))
-                _add_place(table, 0, above, x, around, over, out[i - first, j])
-            if over < 1.0:
-                depth = max(theta - zenith_horizon, 0.0) / (math.pi - zenith_horizon)
-                x = math.sqrt(min(depth, 1.0))
-                _add_place(table, above, table.shape[0], x, around, 1.0 - over, out[i - first, j])
+            theta = _at(zenith, i, j)
+            extent = _at(footprint, i, j)
+            before, u = _place(_at(azimuth, i, j), table.shape[1])
+            after = before + 1 if before + 1 < table.shape[1] else 0
+            rest = np.float32(1.0) - u
+            here = out[i - first, j]
+            _add_node(table, above, zenith_horizon, theta, extent, before, rest, here)
+            _add_node(table, above, zenith_horizon, theta, extent, after, u, here)
 
 
 @kernel
-def _add_place(table, begin, end, x, around, share, out):
-    """Add `share` of the light at a place between rows, x from 0 to 1, and between bearings."""
+def _at(angle, i, j):
+    """Element of an array whose rows or columns may all be alike."""
+    return angle[min(i, angle.shape[0] - 1), min(j, angle.shape[1] - 1)]
+
+
+@kernel
+def _place(bearing, size):
+    """Node before a bearing, and the share of the next one."""
+    turns = bearing / (2.0 * math.pi)
+    across = (turns - math.floor(turns)) * size
+    before = min(int(across), size - 1)
+    return before, np.float32(across - before)
+
+
+@kernel
+def _add_ring(ring, azimuth, out):
+    """Add a ring of the table, which ends where it begins, to pixels at bearings."""
+    for j in range(out.shape[0]):
+        before, u = _place(azimuth[j], ring.shape[0] - 1)
+        for c in range(3):
+            out[j, c] += ring[before, c] + u * (ring[before + 1, c] - ring[before, c])
+
+
+@kernel
+def _add_node(table, above, zenith_horizon, theta, extent, bearing, share, out):
+    """Add `share` of the light at a zenith angle and a node of bearing, shape (3,)."""
+    over = (zenith_horizon - theta) / max(extent, 1e-12) + 0.5
+    over = min(max(over, 0.0), 1.0)
+    if over > 0.0:
+        x = 1.0 - math.sqrt(max(1.0 - min(theta, zenith_horizon) / zenith_horizon, 0.0))
+        _add_rows(table, 0, above, x, bearing, share * np.float32(over), out)
+    if over < 1.0:
+        depth = max(theta - zenith_horizon, 0.0) / (math.pi - zenith_horizon)
+        x = math.sqrt(min(depth, 1.0))
+        rest = share * np.float32(1.0 - over)
+        _add_rows(table, above, table.shape[0], x, bearing, rest, out)
+
+
+@kernel
+def _add_rows(table, begin, end, x, bearing, share, out):
+    """Add `share` of the light between rows, x from 0 to 1 of begin..end."""
     y = x * (end - begin - 1)
     i = min(int(y), end - begin - 2)
-    v = y - i
-    turns = around / (2.0 * math.pi)
-    across = (turns - math.floor(turns)) * table.shape[1]
-    j = min(int(across), table.shape[1] - 1)
-    u = across - j
-    after = j + 1 if j + 1 < table.shape[1] else 0
+    v = np.float32(y - i)
     for c in range(3):
-        upper = (1.0 - u) * table[begin + i, j, c] + u * table[begin + i, after, c]
-        lower = (1.0 - u) * table[begin + i + 1, j, c] + u * table[begin + i + 1, after, c]
-        out[c] += np.float32(share * ((1.0 - v) * upper + v * lower))
+        upper, lower = table[begin + i, bearing, c], table[begin + i + 1, bearing, c]
+        out[c] += share * (upper + v * (lower - upper))

@@ -1,4 +1,4 @@
-"""The stars that an observer sees through the air."""
+"""The stars and planets that an observer sees through the air."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from skybake.angles import direction_from_angles, zenith_azimuth
 from skybake.ephemeris.celestial import CelestialFrame
 from skybake.ephemeris.horizon import Horizon
 from skybake.night.catalogue import FAINTEST, load_catalogue
+from skybake.night.planets import planet_points
 from skybake.night.star_light import star_irradiance
 from skybake.optics.medium import Array
 from skybake.sky.disc import Disc
@@ -23,7 +24,7 @@ LIFT_NODES = 400
 
 
 class Stars:
-    """Where stars are seen, and their light that arrives.
+    """Where stars and planets are seen, and their light that arrives.
 
     Parameters
     ----------
@@ -55,14 +56,16 @@ class Stars:
         is_refracted: bool = False,
     ) -> None:
         stars = load_catalogue().brighter_than(faintest)
-        vectors = frame.directions(stars.places, stars.motions)
+        planets = planet_points(frame, sky.altitude, faintest)
+        vectors = np.concatenate([frame.directions(stars.places, stars.motions), planets.vectors])
+        v, b_v = np.concatenate([stars.v, planets.v]), np.concatenate([stars.b_v, planets.b_v])
         if is_refracted:
             vectors = _raised(vectors, Horizon(frame.planet, sky.altitude))
         zenith, _ = zenith_azimuth(vectors)
         passing = Disc(sky.skylight, sky.source).transmittance(zenith)
         is_seen = np.any(passing > 0.0, axis=1)
         self.vectors = vectors[is_seen]
-        self._v, self._b_v = stars.v[is_seen], stars.b_v[is_seen]
+        self._v, self._b_v = v[is_seen], b_v[is_seen]
         self.transmittance = passing[is_seen]
         self.irradiance = self.above_air(sky.wavelengths) * self.transmittance
 

@@ -29,13 +29,15 @@ INNER_FALL = 2.5
 """The power of elongation, as of the sun's F corona."""
 
 
-def zodiacal_light(longitude: Array, latitude: Array) -> Array:
+def zodiacal_light(longitude: Array, latitude: Array, *, has_corona: bool = True) -> Array:
     """Radiance at 500 nm as seen from 1 au.
 
     Parameters
     ----------
     longitude, latitude : ndarray of float64
         Ecliptic, the former from the sun. [rad]
+    has_corona : bool, optional
+        Whether it grows within `INNER` too.
 
     Returns
     -------
@@ -57,8 +59,8 @@ def zodiacal_light(longitude: Array, latitude: Array) -> Array:
     j, v = _interval(latitudes, y)
     low = (1.0 - v) * logarithms[i, j] + v * logarithms[i, j + 1]
     high = (1.0 - v) * logarithms[i + 1, j] + v * logarithms[i + 1, j + 1]
-    light: Array = UNIT * np.exp((1.0 - u) * low + u * high) * stretch**INNER_FALL
-    return light
+    light: Array = UNIT * np.exp((1.0 - u) * low + u * high)
+    return light * stretch**INNER_FALL if has_corona else light
 
 
 def zodiacal_colours(wavelengths: Array) -> Array:

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.optics.legendre import legendre_moments, legendre_polynomials, sum_series
+from skybake.optics.matrix import ELEMENTS, matrix_moments
 from skybake.optics.medium import (
     Array,
     Medium,
@@ -53,6 +54,9 @@ class ScaledMedium(NamedTuple):
     phase : ndarray of float64, shape (phase function, SCATTERING_ANGLES, wavelength)
         Phase functions that a ray's light is kept apart by: each constituent's, then
         for each peaked one the functions at `PEAK_NODES`. [sr⁻¹]
+    matrix_moments : ndarray of float64, shape (constituent, 3, order + 1, wavelength)
+        Of the truncated scattering matrices, see `skybake.optics.matrix`; of no constituent where
+        light is not polarised.
     """
 
     medium: Medium
@@ -62,6 +66,7 @@ class ScaledMedium(NamedTuple):
     scattering: Array
     mixture: Array
     phase: Array
+    matrix_moments: Array
 
 
 def scale_medium(medium: Medium, order: int) -> ScaledMedium:
@@ -114,10 +119,27 @@ def scale_medium(medium: Medium, order: int) -> ScaledMedium:
         scattering=medium.scattering * kept,
         extinction=medium.extinction - medium.scattering * fraction,
         phase=phase,
+        matrix=medium.matrix[:0],
     )
     return ScaledMedium(
-        scaled, moments, peaked, fraction, true_scattering, mixture, np.concatenate([phase, *peaks])
+        scaled,
+        moments,
+        peaked,
+        fraction,
+        true_scattering,
+        mixture,
+        np.concatenate([phase, *peaks]),
+        _truncated_matrices(medium, fraction, order),
     )
+
+
+def _truncated_matrices(medium: Medium, fraction: Array, order: int) -> Array:
+    """Moments of matrices without peaks, within which light keeps its polarisation."""
+    moments = matrix_moments(medium.matrix, medium.phase, order)
+    if len(moments):
+        moments[:, 1:, 2:] -= fraction[:, None, None]
+        moments /= (1.0 - fraction)[:, None, None]
+    return moments
 
 
 def peak_moments(medium: Medium, scaled: ScaledMedium) -> Array:
@@ -169,6 +191,7 @@ def keep_unscaled(medium: Medium) -> ScaledMedium:
         scattering=nothing,
         mixture=nothing[0],
         phase=medium.phase,
+        matrix_moments=np.zeros((0, ELEMENTS, 1, medium.scattering.shape[1])),
     )
 
 

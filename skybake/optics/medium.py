@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.errors import PresetError
+from skybake.optics.matrix import ELEMENTS, build_matrix, rayleigh_matrix, unpolarising_matrix
 from skybake.optics.phase import SCATTERING_ANGLES, build_phase, phase_rayleigh, scattering_angles
 from skybake.optics.profile import eval_profile
 from skybake.optics.rayleigh import gas_scattering
@@ -41,6 +42,9 @@ class Medium(NamedTuple):
         sphere. [sr⁻¹]
     ground_albedo : ndarray of float64, shape (wavelength,)
         Fraction of the irradiance that the ground returns, in [0, 1].
+    matrix : ndarray of float64, shape (constituent, ELEMENTS, SCATTERING_ANGLES, wavelength)
+        The other elements of the constituents' scattering matrices, see `skybake.optics.matrix`; of
+        no constituent where light is not polarised. [sr⁻¹]
     """
 
     r_bottom: float
@@ -50,6 +54,7 @@ class Medium(NamedTuple):
     extinction: Array
     phase: Array
     ground_albedo: Array
+    matrix: Array = np.zeros((0, ELEMENTS, SCATTERING_ANGLES, 0))
 
 
 def altitude_nodes(r_bottom: float, r_top: float) -> Array:
@@ -96,7 +101,7 @@ def build_medium(planet: Planet, wavelengths: Array, bandwidth: float = BANDWIDT
                 f"{planet.name}: constituents.{constituent.name}.profile: must be thicker than "
                 f"{float(np.diff(altitude).max()):.2g} km, the widest step between altitudes"
             )
-    scattering, absorption, phase = zip(
+    scattering, absorption, phase, matrix = zip(
         *(
             _optics(constituent, column, wavelengths, bandwidth)
             for constituent, column in zip(planet.constituents, columns.tolist(), strict=True)
@@ -111,6 +116,7 @@ def build_medium(planet: Planet, wavelengths: Array, bandwidth: float = BANDWIDT
         extinction=np.stack(scattering) + np.stack(absorption),
         phase=np.stack(phase),
         ground_albedo=eval_spectrum(planet.ground.albedo, wavelengths),
+        matrix=np.stack(matrix),
     )
 
 
@@ -152,35 +158,40 @@ def pad_wavelengths(medium: Medium) -> Medium:
     """Repeat the last wavelength until their number is a multiple of `LANES`."""
     last = medium.ground_albedo.size - 1
     index = np.minimum(np.arange(-(-(last + 1) // LANES) * LANES), last)
+    matrix = medium.matrix[..., index] if len(medium.matrix) else medium.matrix
     return medium._replace(
         scattering=np.ascontiguousarray(medium.scattering[:, index]),
         extinction=np.ascontiguousarray(medium.extinction[:, index]),
         phase=np.ascontiguousarray(medium.phase[:, :, index]),
+        matrix=np.ascontiguousarray(matrix),
         ground_albedo=medium.ground_albedo[index],
     )
 
 
 def _optics(
     constituent: Constituent, column: float, wavelengths: Array, bandwidth: float
-) -> tuple[Array, Array, Array]:
-    """Scattering and absorption [km⁻¹] and phase function [sr⁻¹]; `column` in km."""
+) -> tuple[Array, Array, Array, Array]:
+    """Scattering and absorption [km⁻¹], phase function and matrix [sr⁻¹]; `column` in km."""
     if isinstance(constituent, Gas):
         scattering, depolarisation = gas_scattering(constituent, wavelengths)
         phase = phase_rayleigh(np.cos(scattering_angles())[:, None], depolarisation)
-        return scattering, np.zeros(len(wavelengths)), phase
+        return scattering, np.zeros(len(wavelengths)), phase, rayleigh_matrix(depolarisation)
     if isinstance(constituent, Absorber):
         cross_section = eval_band_mean(constituent.cross_section, wavelengths, bandwidth)
         absorption = cross_section * constituent.column / column
-        return np.zeros(len(wavelengths)), absorption, _isotropic(len(wavelengths))
+        phase = _isotropic(len(wavelengths))
+        return np.zeros(len(wavelengths)), absorption, phase, unpolarising_matrix(phase)
     phase = build_phase(constituent.phase, wavelengths)
+    matrix = build_matrix(constituent.phase, phase, wavelengths)
     if isinstance(constituent, Aerosol):
         extinction = aerosol_optical_depth(constituent, wavelengths) / column
         albedo = eval_spectrum(constituent.single_scattering_albedo, wavelengths)
-        return albedo * extinction, (1.0 - albedo) * extinction, phase
+        return albedo * extinction, (1.0 - albedo) * extinction, phase, matrix
     return (
         eval_spectrum(constituent.scattering, wavelengths),
         eval_spectrum(constituent.absorption, wavelengths),
         phase,
+        matrix,
     )
 
 

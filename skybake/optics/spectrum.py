@@ -17,6 +17,11 @@ Array = npt.NDArray[np.float64]
 BANDWIDTH = 10.0
 """Width of the band that stands for one wavelength of a finely structured spectrum. [nm]"""
 
+WIDEST = 25.0
+"""Distance beyond which a spectrum does not count for a wavelength. [nm]"""
+
+_HAT_SAMPLES = 400
+
 
 def eval_spectrum(spectrum: Spectrum, wavelengths: Array) -> Array:
     """Evaluate a spectrum, linear between its nodes and exact at them.
@@ -78,6 +83,45 @@ def eval_band_mean(spectrum: Spectrum, wavelengths: Array, bandwidth: float) -> 
     integral = below[left] + (edges - nodes[left]) * (values[left] + at_edges) / 2.0
     mean: Array = (integral[1] - integral[0]) / (edges[1] - edges[0])
     return mean
+
+
+def hat_means(spectrum: Spectrum, wavelengths: Array) -> Array:
+    """Average a spectrum around wavelengths, weighted as linear interpolation weights them.
+
+    Parameters
+    ----------
+    spectrum : Spectrum
+        What the preset gives.
+    wavelengths : ndarray, shape (wavelength,)
+        Ascending. A weight falls from 1 to 0 at the neighbours, at most `WIDEST` away; the first
+        and the last have the same distance on both sides, a single one `BANDWIDTH`. [nm]
+
+    Returns
+    -------
+    ndarray of float64, shape (wavelength,)
+        What is linear between these values has the spectrum's integral between the ends.
+
+    Raises
+    ------
+    PresetError
+        If a wavelength is outside the nodes.
+    """
+    if not spectrum.wavelength:
+        return eval_spectrum(spectrum, wavelengths)
+    check_range(spectrum.where, spectrum.wavelength, wavelengths)
+    steps = np.minimum(np.diff(wavelengths), WIDEST)
+    if wavelengths.size == 1:
+        below = above = np.array([BANDWIDTH])
+    else:
+        below, above = np.append(steps[0], steps), np.append(steps, steps[-1])
+    side = (np.arange(_HAT_SAMPLES) + 0.5) / _HAT_SAMPLES
+    nodes, values = np.array(spectrum.wavelength), np.array(spectrum.values)
+    total = np.zeros(wavelengths.size)
+    for sign, width in ((-1.0, below), (1.0, above)):
+        around = wavelengths[:, None] + sign * width[:, None] * side
+        total += width * (np.interp(around, nodes, values) @ (1.0 - side))
+    means: Array = total / (0.5 * _HAT_SAMPLES * (below + above))
+    return means
 
 
 def star_at(star: Star, distance: float | None) -> Star:

@@ -24,6 +24,8 @@ _RIVALS = {
     "angstrom_exponent": "relative_extinction",
     "liquid_water_path_g_m2": "optical_depth",
     "optical_depth": "liquid_water_path_g_m2",
+    # What a former table said of polarisation does not hold for another.
+    "table": "polarisation",
     "tile": "kind",
     "kind": "tile",
 }

@@ -54,6 +54,30 @@ class DoubleHenyeyGreensteinPhase:
     first_fraction: Spectrum
 
 
+@dataclass(frozen=True)
+class PolarisationTable:
+    """Elements of a scattering matrix over P11, linear over scattering angle and wavelength.
+
+    Attributes
+    ----------
+    where : str
+        Where the preset names it, for messages.
+    angle : tuple of float
+        Scattering angles, ascending from 0 to pi. [rad]
+    wavelength : tuple of float
+        Strictly ascending. [nm]
+    p12, p33 : tuple of tuple of float
+        One tuple a wavelength, one value an angle, from -1 to 1. P12 below 0 polarises across the
+        plane of scattering.
+    """
+
+    where: str
+    angle: tuple[float, ...]
+    wavelength: tuple[float, ...]
+    p12: tuple[tuple[float, ...], ...]
+    p33: tuple[tuple[float, ...], ...]
+
+
 @dataclass(frozen=True, slots=True)
 class TabulatedPhase:
     """A table over scattering angle, interpolated in the logarithm, and over wavelength.
@@ -68,12 +92,15 @@ class TabulatedPhase:
         Strictly ascending [nm]; empty if the one column holds everywhere.
     values : tuple of tuple of float
         One tuple a wavelength, one value an angle, all positive. [sr⁻¹]
+    polarisation : PolarisationTable or None
+        How the light is polarised; None if that is not known.
     """
 
     where: str
     angle: tuple[float, ...]
     wavelength: tuple[float, ...]
     values: tuple[tuple[float, ...], ...]
+    polarisation: PolarisationTable | None = None
 
 
 Phase = (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from dataclasses import replace
 from itertools import pairwise
 
 from skybake.errors import PresetWarning
@@ -14,6 +15,11 @@ from skybake.preset.optics_model import (
     Phase,
     RayleighPhase,
     TabulatedPhase,
+)
+from skybake.preset.polarisation import (
+    read_angles,
+    read_polarisation,
+    wavelength_of_column,
 )
 from skybake.preset.section import Gather, Section
 
@@ -70,19 +76,18 @@ def read_phase(section: Section, asymmetry: tuple[float, float] = ASYMMETRY) -> 
         )
     else:
         phase = read(_read_table, section)
+        if section.has("polarisation"):
+            polarisation = read(read_polarisation, section)
+            if phase is not None:
+                phase = replace(phase, polarisation=polarisation)
     read.finish()
     return phase
 
 
 def _read_table(section: Section) -> TabulatedPhase:
-    columns = section.table("table", "angle_deg")
-    degrees = columns.get("angle_deg", ())
-    if not degrees or degrees[0] != 0.0 or degrees[-1] != 180.0:
-        section.fail("table", "column angle_deg must run from 0 to 180")
-    if any(a >= b for a, b in pairwise(degrees)):
-        section.fail("table", "angle_deg must ascend")
+    columns, angle = read_angles(section, "table")
     bands = sorted(
-        (_wavelength_of_column(section, key), values)
+        (wavelength_of_column(section, "table", key), values)
         for key, values in columns.items()
         if key != "angle_deg"
     )
@@ -95,7 +100,6 @@ def _read_table(section: Section) -> TabulatedPhase:
     wavelengths = tuple(wavelength for wavelength, _ in bands)
     if len(bands) > 1:
         section.check_cover("table", wavelengths)
-    angle = tuple(math.radians(a) for a in degrees)
     for wavelength, values in bands:
         _check_integral(section, wavelength, integral_over_sphere(angle, values))
     return TabulatedPhase(
@@ -145,13 +149,3 @@ def _check_integral(section: Section, wavelength: float, integral: float) -> Non
             PresetWarning,
             stacklevel=2,
         )
-
-
-def _wavelength_of_column(section: Section, column: str) -> float:
-    try:
-        wavelength = float(column)
-    except ValueError:
-        wavelength = math.nan
-    if not 1.0 <= wavelength <= 1e6:
-        section.fail("table", f"columns must be named by their wavelength in nm, got {column!r}")
-    return wavelength

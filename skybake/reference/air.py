@@ -34,6 +34,8 @@ class Air(NamedTuple):
         directions are drawn from. [sr⁻¹]
     lobe_cumulative : ndarray of float64, shape (constituent, scattering angle)
         Probability of scattering by less than each angle.
+    matrix : ndarray of float64, shape (constituent, ELEMENTS, scattering angle)
+        The other elements of their matrices, see `Medium.matrix`. [sr⁻¹]
     albedo : float
         Lambertian albedo of the ground.
     """
@@ -45,6 +47,7 @@ class Air(NamedTuple):
     phase: Array
     lobe: Array
     lobe_cumulative: Array
+    matrix: Array
     albedo: float
 
 
@@ -60,8 +63,15 @@ def air_at(medium: Medium, wavelength: int) -> Air:
         phase=phase,
         lobe=lobe,
         lobe_cumulative=cumulative,
+        matrix=_matrix(medium, wavelength),
         albedo=float(medium.ground_albedo[wavelength]),
     )
+
+
+def _matrix(medium: Medium, wavelength: int) -> Array:
+    if not len(medium.matrix):
+        return np.empty((0, 0, 0))
+    return np.ascontiguousarray(medium.matrix[..., wavelength])
 
 
 def _lobes(phase: Array) -> tuple[Array, Array]:

@@ -37,7 +37,11 @@ def batch_seed(seed: int, row: int) -> np.uint64:
 
 
 def estimate_means(
-    views: int, wavelengths: int, seed: int, mean: Callable[[int, int, np.uint64], float]
+    views: int,
+    wavelengths: int,
+    seed: int,
+    mean: Callable[[int, int, np.uint64], float | Array],
+    components: tuple[int, ...] = (),
 ) -> tuple[Array, Array]:
     """Estimate radiances from batches of samples, in parallel.
 
@@ -49,17 +53,20 @@ def estimate_means(
         Same seed, same result, for any number of threads.
     mean : callable
         Mean of one batch for the view and the wavelength of these numbers, with this seed.
+    components : tuple of int, optional
+        Shape of what it returns.
 
     Returns
     -------
-    mean, stderr : ndarray of float64, shape (view, wavelength)
+    mean, stderr : ndarray of float64, shape (view, wavelength, ...)
     """
-    means = np.empty((views, wavelengths, BATCHES))
+    rows = views, wavelengths, BATCHES
+    means = np.empty((*rows, *components))
 
     def trace_batches(begin: int, end: int) -> None:
         for row in range(begin, end):
-            index = np.unravel_index(row, means.shape)
+            index = np.unravel_index(row, rows)
             means[index] = mean(int(index[0]), int(index[1]), batch_seed(seed, row))
 
-    ALL_CPUS.run_rows(means.size, trace_batches)
-    return means.mean(axis=-1), means.std(axis=-1, ddof=1) / math.sqrt(BATCHES)
+    ALL_CPUS.run_rows(math.prod(rows), trace_batches)
+    return means.mean(axis=2), means.std(axis=2, ddof=1) / math.sqrt(BATCHES)

@@ -116,8 +116,8 @@ def radiance(
         message = f"orders: must be 1 <= first <= last, got {orders}"
         raise InputError(message)
     last = _ENDLESS if math.isinf(last) else int(last)
-    sun, views = _directions(altitude, sun_elevation, view_zenith, relative_azimuth)
-    models = _models(medium)
+    sun, views = directions_of(altitude, sun_elevation, view_zenith, relative_azimuth)
+    models = models_of(medium)
     per_batch = samples_per_batch(samples)
 
     def mean_of(view: int, wavelength: int, batch: np.uint64) -> float:
@@ -148,7 +148,7 @@ def single_scattering(
     ndarray of float64, shape (direction, wavelength)
         Per unit solar irradiance at the top of the atmosphere. [sr⁻¹]
     """
-    sun, views = _directions(altitude, sun_elevation, view_zenith, relative_azimuth)
+    sun, views = directions_of(altitude, sun_elevation, view_zenith, relative_azimuth)
     direction = np.array(views)
     mu, nu = direction[:, 2].copy(), np.clip(direction @ sun, -1.0, 1.0)
     r, mu_s = np.full(mu.shape, medium.r_bottom + altitude), np.full(mu.shape, sun[2])
@@ -171,8 +171,8 @@ def irradiance(
     Parameters and errors are those of `radiance`; every order is sampled. An occultation leaves
     the transmittance as it is.
     """
-    sun, _ = _directions(altitude, sun_elevation, 0.0, 0.0)
-    models = _models(medium)
+    sun, _ = directions_of(altitude, sun_elevation, 0.0, 0.0)
+    models = models_of(medium)
     per_batch = samples_per_batch(samples)
 
     def mean_of(side: int, wavelength: int, batch: np.uint64) -> float:
@@ -189,7 +189,8 @@ def irradiance(
     return Irradiance(transmittance, direct, mean[0], stderr[0], mean[1], stderr[1])
 
 
-def _models(medium: Medium) -> list[tuple[Air, Guide]]:
+def models_of(medium: Medium) -> list[tuple[Air, Guide]]:
+    """Air and guide of each wavelength."""
     airs = [air_at(medium, wavelength) for wavelength in range(len(medium.ground_albedo))]
     guides: list[Guide] = [None] * len(airs)  # type: ignore[list-item]
 
@@ -201,7 +202,7 @@ def _models(medium: Medium) -> list[tuple[Air, Guide]]:
     return list(zip(airs, guides, strict=True))
 
 
-def _directions(
+def directions_of(
     altitude: float,
     sun_elevation: float,
     view_zenith: npt.ArrayLike,

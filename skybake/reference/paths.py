@@ -21,7 +21,15 @@ from skybake.reference.directions import (
     uniform,
 )
 from skybake.reference.guide import Guide, draw_guided, guided_density, look_up
-from skybake.reference.occultation import Occultation, uncovered_share
+from skybake.reference.occultation import Occultation, no_occultation, uncovered_share
+from skybake.reference.polarised import (
+    add_sunlight,
+    begin_track,
+    lose_polarisation,
+    new_track,
+    no_track,
+    turn_track,
+)
 from skybake.reference.rays import (
     Cuts,
     new_cuts,
@@ -45,7 +53,7 @@ SURVIVAL = 0.3
 @kernel
 def follow(
     air, guide, sun, occultation, observer, ray, stretches, cumulative, u, up, h, direction,
-    first, last, scratch, state,
+    first, last, scratch, track, state,
 ):  # fmt: skip
     """Radiance that one path brings, orders `first` to `last`, per unit solar irradiance.
 
@@ -61,6 +69,8 @@ def follow(
         Random number that chooses the first stretch.
     scratch : tuple
         Cuts, stretches and coefficients for the rays that follow.
+    track : Track
+        Follows polarisation, if it is not empty.
     """
     cuts, later_cumulative, each = scratch
     radiance = 0.0
@@ -68,6 +78,7 @@ def follow(
     first_weight = 0.0
     first_promise = 0.0
     order = 1
+    begin_track(track, up, direction)
     while True:
         if stretches == 0:
             return radiance
@@ -79,6 +90,7 @@ def follow(
         at_ground = shell < 0
         if at_ground:
             weight *= air.albedo
+            lose_polarisation(track)
             total = scattering_at(air, 0, 0.0, each)
         else:
             total = scattering_at(air, shell, h, each)
@@ -89,7 +101,9 @@ def follow(
             return radiance
         if order >= first:
             light = _sunlight(air, each, total, h, mu_s, direction, sun, at_ground)
-            radiance += weight * _uncovered(light, occultation, air.r_bottom + h, up, observer)
+            light = weight * _uncovered(light, occultation, air.r_bottom + h, up, observer)
+            radiance += light
+            add_sunlight(air, each, track, direction, sun, light, at_ground)
         if order >= last:
             return radiance
         promise = weight * look_up(guide, guide.ambient, h, mu_s)
@@ -102,9 +116,11 @@ def follow(
             if uniform(state) >= survival:
                 return radiance
             weight /= survival
-        direction, step_weight = turn(
+        turned, step_weight = turn(
             air, guide, each, total, h, up, direction, sun, at_ground, order, state
         )
+        turn_track(air, each, track, direction, turned, at_ground)
+        direction = turned
         if step_weight <= 0.0:
             return radiance
         weight *= step_weight
@@ -211,13 +227,36 @@ def mean_radiance(
     state = np.array([seed], np.uint64)
     return float(
         _mean_radiance(
-            air, guide, sun, occultation, h, direction, first, last, samples, _new_room(air), state
+            air, guide, sun, occultation, h, direction, first, last, samples, _new_room(air),
+            no_track(), state,
         )
-    )
+    )  # fmt: skip
+
+
+def mean_stokes(
+    air: Air,
+    guide: Guide,
+    sun: Direction,
+    h: float,
+    direction: Direction,
+    first: int,
+    samples: int,
+    seed: np.uint64,
+) -> npt.NDArray[np.float64]:
+    """Mean (I, Q, U) of the orders from `first` on over paths as of `mean_radiance`."""
+    state, track = np.array([seed], np.uint64), new_track()
+    last = np.iinfo(np.int64).max
+    _mean_radiance(
+        air, guide, sun, no_occultation(), h, direction, first, last, samples, _new_room(air),
+        track, state,
+    )  # fmt: skip
+    return track.stokes / samples
 
 
 @kernel
-def _mean_radiance(air, guide, sun, occultation, h, direction, first, last, samples, room, state):
+def _mean_radiance(
+    air, guide, sun, occultation, h, direction, first, last, samples, room, track, state
+):  # fmt: skip
     up = (0.0, 0.0, 1.0)
     scratch = (room.cuts, room.stretches, room.coefficients)
     ray = trace(air, h, direction[2], room.first_cuts)
@@ -244,6 +283,7 @@ def _mean_radiance(air, guide, sun, occultation, h, direction, first, last, samp
             first,
             last,
             scratch,
+            track,
             state,
         )
     return total / samples
@@ -268,11 +308,12 @@ def mean_irradiance(
     """
     state = np.array([seed], np.uint64)
     room = _new_room(air)
-    return float(_mean_irradiance(air, guide, sun, occultation, h, facing, samples, room, state))
+    light = air, guide, sun, occultation
+    return float(_mean_irradiance(*light, h, facing, samples, room, no_track(), state))
 
 
 @kernel
-def _mean_irradiance(air, guide, sun, occultation, h, facing, samples, room, state):
+def _mean_irradiance(air, guide, sun, occultation, h, facing, samples, room, track, state):
     up = (0.0, 0.0, 1.0)
     normal = (0.0, 0.0, facing)
     scratch = (room.cuts, room.stretches, room.coefficients)
@@ -306,6 +347,6 @@ def _mean_irradiance(air, guide, sun, occultation, h, facing, samples, room, sta
         )
         total += (cosine / density) * follow(
             air, guide, sun, occultation, air.r_bottom + h, ray, stretches, cumulative,
-            uniform(state), up, h, direction, 1, np.iinfo(np.int64).max, scratch, state,
+            uniform(state), up, h, direction, 1, np.iinfo(np.int64).max, scratch, track, state,
         )  # fmt: skip
     return total / samples

@@ -29,7 +29,7 @@ from skybake.scattering.field import (
     sun_factors,
     twilight_scale,
 )
-from skybake.scattering.grid import ORDER, no_field
+from skybake.scattering.grid import ORDER, no_field, polarised_source
 from skybake.scattering.harmonics import build_harmonics
 from skybake.scattering.horizon_peaks import HorizonPeaks, no_horizon_peaks
 from skybake.scattering.solver import solve_light
@@ -37,6 +37,9 @@ from skybake.scattering.table_shapes import are_tables_of
 from skybake.scattering.tables import Atmosphere
 from skybake.scattering.transmittance import build_columns
 from skybake.transport.shells import altitude_shells
+
+SCALAR = "scalar"
+"""Method of all orders of scattering as if light were not polarised."""
 
 KEPT = 4
 """Atmospheres kept in memory; the maps of a sequence share one, or each has its own."""
@@ -51,8 +54,9 @@ def build_atmosphere(medium: Medium, method: str, workers: Workers = ALL_CPUS) -
     ----------
     medium : Medium
         The atmosphere.
-    method : {"full", "hillaire"}
-        All orders of scattering, or Hillaire's closure.
+    method : {"full", "scalar", "hillaire"}
+        All orders of scattering with polarised light, or as if light were not polarised, or
+        Hillaire's closure.
     workers : Workers, optional
         Threads that do the work.
 
@@ -62,7 +66,7 @@ def build_atmosphere(medium: Medium, method: str, workers: Workers = ALL_CPUS) -
         If all orders were asked for, and the atmosphere is too thick or its peaks too strong.
     """
     dark = dark_atmosphere(medium, method, workers)
-    if method == "full":
+    if method != "hillaire":
         return solve_light(dark, workers)
     return dark._replace(field=close_field(dark, workers))
 
@@ -73,7 +77,9 @@ def dark_atmosphere(medium: Medium, method: str, workers: Workers = ALL_CPUS) ->
     Parameters are those of `build_atmosphere`.
     """
     padded = pad_wavelengths(medium)
-    scaled = scale_medium(padded, ORDER) if method == "full" else keep_unscaled(padded)
+    if method == SCALAR:
+        padded = padded._replace(matrix=padded.matrix[:0])
+    scaled = keep_unscaled(padded) if method == "hillaire" else scale_medium(padded, ORDER)
     return Atmosphere(
         medium=medium,
         scaled=scaled,
@@ -179,7 +185,9 @@ def _from_arrays(medium: Medium, arrays: dict[str, Any]) -> Atmosphere:
         scattering=arrays["scaled_scattering"],
         extinction=arrays["scaled_extinction"],
         phase=delta_m_arrays["phase"][:constituents],
+        matrix=np.zeros((0, *medium.matrix.shape[1:])),
     )
+    scaled_medium = ScaledMedium(medium=scaled, **delta_m_arrays)
     twilight = twilight_scale(medium)
     field = DiffuseField(
         harmonics=build_harmonics(int(arrays["order"])),
@@ -191,12 +199,13 @@ def _from_arrays(medium: Medium, arrays: dict[str, Any]) -> Atmosphere:
         twilight=twilight,
         steep_from=steep_twilight(medium),
         source=arrays["source"],
+        polarised=polarised_source(scaled_medium),
         radiance=arrays["radiance"],
         ground=arrays["ground"],
     )
     return Atmosphere(
         medium=medium,
-        scaled=ScaledMedium(medium=scaled, **delta_m_arrays),
+        scaled=scaled_medium,
         shells=arrays["shells"],
         columns=arrays["columns"],
         field=field,

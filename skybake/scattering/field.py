@@ -60,8 +60,13 @@ class DiffuseField(NamedTuple):
         `steep_twilight` of the atmosphere. [rad]
     source : ndarray of float64, shape (constituent, order + 1, wavelength)
         Scattering coefficient times chi_l at density 1. [km⁻¹]
+    polarised : ndarray of float64, shape (constituent, 2, wavelength)
+        Scattering coefficient times beta_2 and alpha2_2 at density 1, see
+        `skybake.optics.matrix.matrix_moments`; of no constituent in a field without
+        polarisation. [km⁻¹]
     radiance : ndarray of float32, shape (altitude, sun, harmonic, wavelength)
-        Moments of the radiance scattered or reflected at least once. [sr⁻¹]
+        Moments of the radiance scattered or reflected at least once, and after them, if there is
+        polarisation, those of `skybake.scattering.polarised`. [sr⁻¹]
     ground : ndarray of float64, shape (sun, wavelength)
         Irradiance of the ground by the sky.
     """
@@ -75,6 +80,7 @@ class DiffuseField(NamedTuple):
     twilight: float
     steep_from: float
     source: Array
+    polarised: Array
     radiance: npt.NDArray[np.float32]
     ground: Array
 
@@ -160,7 +166,7 @@ def sum_fields(field: DiffuseField, other: DiffuseField, factor: float) -> Diffu
 
 def lower_order(field: DiffuseField, order: int) -> DiffuseField:
     """Keep the harmonics of a field up to an order."""
-    kept = field.harmonics.degree <= order
+    kept = _kept(field, order)
     return field._replace(
         harmonics=build_harmonics(order),
         source=np.ascontiguousarray(field.source[:, : order + 1]),
@@ -171,9 +177,16 @@ def lower_order(field: DiffuseField, order: int) -> DiffuseField:
 def raise_order(solved: DiffuseField, first: DiffuseField, fine: DiffuseField) -> DiffuseField:
     """Add to `fine` what a field of lower order gained over its own first scattering."""
     radiance = fine.radiance.copy()
-    kept = fine.harmonics.degree <= solved.harmonics.order
+    kept = _kept(fine, solved.harmonics.order)
     radiance[:, :, kept] += solved.radiance - first.radiance
     return fine._replace(radiance=radiance, ground=fine.ground + solved.ground - first.ground)
+
+
+def _kept(field: DiffuseField, order: int) -> npt.NDArray[np.bool_]:
+    """Moments that are of degrees up to an order, or of polarised light."""
+    kept = np.ones(field.radiance.shape[2], np.bool_)
+    kept[: field.harmonics.degree.size] = field.harmonics.degree <= order
+    return kept
 
 
 @kernel

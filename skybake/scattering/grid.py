@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,6 +20,7 @@ from skybake.scattering.field import (
     twilight_scale,
 )
 from skybake.scattering.harmonics import build_harmonics, harmonics_at
+from skybake.scattering.polarised import ORDERS, spin_functions
 from skybake.transport.shells import altitude_shells
 
 ORDER = 14
@@ -159,11 +161,19 @@ def _split_directions(r_bottom: float, h: float, upward: int, downward: int) -> 
     mu_horizon = -math.sqrt(max(0.0, 1.0 - (r_bottom / (r_bottom + h)) ** 2))
     mu, weight = [], []
     for count, span in ((upward, 1.0 - mu_horizon), (downward, -1.0 - mu_horizon)):
-        x, w = np.polynomial.legendre.leggauss(count)
+        x, w = _gauss_nodes(count)
         x, w = 0.5 * (x + 1.0), 0.5 * w
         mu.append(mu_horizon + span * x**1.5)
         weight.append(abs(span) * 1.5 * np.sqrt(x) * w)
     return np.concatenate(mu), np.concatenate(weight)
+
+
+@cache
+def _gauss_nodes(count: int) -> tuple[Array, Array]:
+    """Nodes and weights of Gauss and Legendre, which each altitude needs."""
+    x, w = np.polynomial.legendre.leggauss(count)
+    x.flags.writeable = w.flags.writeable = False
+    return x, w
 
 
 def empty_field(
@@ -173,6 +183,7 @@ def empty_field(
     harmonics = build_harmonics(order)
     twilight = twilight_scale(scaled.medium)
     wavelengths = scaled.moments.shape[2]
+    moments = harmonics.degree.size + (ORDERS if len(scaled.matrix_moments) else 0)
     return DiffuseField(
         harmonics=harmonics,
         altitude=altitude,
@@ -185,11 +196,18 @@ def empty_field(
         source=np.ascontiguousarray(
             scaled.medium.scattering[:, None] * scaled.moments[:, : order + 1]
         ),
-        radiance=np.zeros(
-            (altitude.size, sun_angle.size, harmonics.degree.size, wavelengths), np.float32
-        ),
+        polarised=polarised_source(scaled),
+        radiance=np.zeros((altitude.size, sun_angle.size, moments, wavelengths), np.float32),
         ground=np.zeros((sun_angle.size, wavelengths)),
     )
+
+
+def polarised_source(scaled: ScaledMedium) -> Array:
+    """`DiffuseField.polarised` of a medium."""
+    moments = scaled.matrix_moments
+    if not len(moments):
+        return np.zeros((0, 2, scaled.mixture.size))
+    return np.ascontiguousarray(scaled.medium.scattering[:, None] * moments[:, :2, 2])
 
 
 def no_field(scaled: ScaledMedium) -> DiffuseField:
@@ -229,3 +247,35 @@ def project(
         up = slice(0, grid.upward)
         flux = grid.weight[0][up] * grid.mu[0][up]
         field.ground[...] = np.tensordot(flux, terms[up, :, 0], axes=1)
+
+
+def project_polarised(
+    grid: Grid, i: int, stokes: npt.NDArray[np.floating[Any]], field: DiffuseField
+) -> None:
+    """Write the moments of polarised light at one altitude of a field.
+
+    Parameters
+    ----------
+    grid : Grid
+        Nodes of the light.
+    i : int
+        The altitude's node.
+    stokes : ndarray, shape (polar, sun, azimuth, 2, wavelength)
+        Q and U with the sun to the left. [sr⁻¹]
+    field : DiffuseField
+        Receives the moments.
+    """
+    even, odd = (each * grid.weight[i][:, None] for each in spin_functions(grid.mu[i]))
+    directions, suns, azimuths, _, wavelengths = stokes.shape
+    angle = np.outer(np.arange(ORDERS), grid.azimuth)
+    around = np.zeros((2, ORDERS, azimuths, 2))
+    around[0, :, :, 0], around[1, :, :, 1] = np.cos(angle), np.sin(angle)
+    around *= 2.0 * math.pi / azimuths
+    terms = np.matmul(
+        around.reshape(2 * ORDERS, -1).astype(np.float32),
+        stokes.reshape(directions, suns, -1, wavelengths),
+    )
+    for m in range(ORDERS):
+        polar = np.stack([even[:, m], odd[:, m]], axis=1).astype(np.float32)
+        moments = np.tensordot(polar, terms[:, :, m::ORDERS], axes=([0, 1], [0, 2]))
+        field.radiance[i, :, field.harmonics.degree.size + m] = moments

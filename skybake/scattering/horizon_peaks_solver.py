@@ -61,8 +61,10 @@ def solve_horizon_peaks(
 
     add(light_beyond_aureole(atmosphere, sparse, moments, workers))
     dark = empty_field(scaled, grid.altitude, grid.sun_angle, ORDER)
+    dark = dark._replace(polarised=dark.polarised[:0])
     rays = trace_grid(scaled, sparse)
-    add(transport_field(scaled, dark, HorizonPeaks(source.copy()), sparse, rays, workers))
+    peaks = HorizonPeaks(source.copy())
+    add(transport_field(scaled, dark, peaks, sparse, rays, workers)[0])
     return HorizonPeaks(source)
 
 

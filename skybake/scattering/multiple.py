@@ -21,6 +21,13 @@ from skybake.scattering.field import (
 from skybake.scattering.field_sums import add_orders, fill_factors, sum_degrees
 from skybake.scattering.harmonics import fill_harmonics
 from skybake.scattering.horizon_peaks import add_horizon_peaks, fill_elevation_weights
+from skybake.scattering.polarised import (
+    ORDERS,
+    add_polarised_source,
+    add_twists,
+    fill_polarised_scattering,
+    fill_spin_functions,
+)
 from skybake.transport.geometry import radius_at
 
 NEGLIGIBLE = 3e-4
@@ -47,6 +54,12 @@ class Scratch(NamedTuple):
         Of a step, and on the ground.
     polar, emitted : ndarray, shape (4,) and (2, wavelength)
         Weights of elevations, and what a step scatters in peaks.
+    coupling : ndarray of float32, shape (2, wavelength)
+        What a step scatters from and to polarised light.
+    twist, turned : ndarray of float32, shape (sun, 3 * wavelength) and (3 * wavelength,)
+        Moments of scattered polarised light at the nodes of the sun's angle, and between them.
+    spins : ndarray, shape (2, 3)
+        Functions of `skybake.scattering.polarised`.
     """
 
     node: npt.NDArray[np.int64]
@@ -61,11 +74,16 @@ class Scratch(NamedTuple):
     sky: Array
     polar: Array
     emitted: Array
+    coupling: npt.NDArray[np.float32]
+    twist: npt.NDArray[np.float32]
+    turned: npt.NDArray[np.float32]
+    spins: Array
 
 
 def allocate_scratch(field: DiffuseField, fans: Fans) -> Scratch:
     """Make the work space for fans in a field."""
-    suns, harmonics, wavelengths = field.radiance.shape[1:]
+    suns, _, wavelengths = field.radiance.shape[1:]
+    harmonics = field.harmonics.degree.size
     widest = int(np.diff(fans.first).max())
     orders = field.harmonics.order + 1
     return Scratch(
@@ -81,6 +99,10 @@ def allocate_scratch(field: DiffuseField, fans: Fans) -> Scratch:
         sky=np.empty(wavelengths),
         polar=np.empty(4),
         emitted=np.empty((2, wavelengths)),
+        coupling=np.empty((2, wavelengths), np.float32),
+        twist=np.empty((suns, ORDERS * wavelengths), np.float32),
+        turned=np.empty(ORDERS * wavelengths, np.float32),
+        spins=np.empty((2, ORDERS)),
     )
 
 
@@ -91,7 +113,7 @@ def side_by_side(field: DiffuseField) -> npt.NDArray[np.float32]:
 
 
 @kernel
-def add_diffuse(field, radiance, peaks, scaled, fans, begin, end, samples, scratch, out):
+def add_diffuse(field, radiance, peaks, scaled, fans, begin, end, samples, scratch, out, stokes):
     """Add the light that rays bring out of the diffuse field.
 
     Parameters
@@ -112,6 +134,8 @@ def add_diffuse(field, radiance, peaks, scaled, fans, begin, end, samples, scrat
         Work space.
     out : ndarray of float32, shape (ray, wavelength)
         Receives radiance per unit irradiance. [sr⁻¹]
+    stokes : ndarray of float32, shape (ray, 2 * wavelength) or (0, 2 * wavelength)
+        Receives Q and U as `skybake.scattering.polarised` has them, if it has rows.
 
     Notes
     -----
@@ -145,17 +169,30 @@ def add_diffuse(field, radiance, peaks, scaled, fans, begin, end, samples, scrat
             )
             fill_harmonics(field.harmonics, mu_here, harmonic)
             fill_factors(harmonic, scattering, degrees, factor)
+            is_polarised = degrees >= ORDERS and fill_polarised_scattering(
+                field, samples, n, weight, scratch.coupling
+            )
             low, u = altitude_weight(field, radius - medium.r_bottom)
             at = _fill_peaks(peaks, scaled, samples, n, radius, mu_here, polar, emitted)
             for j in range(least, most):
                 below, above = radiance[low, j], radiance[low + 1, j]
                 sum_degrees(below, above, u, factor, degrees, wavelengths, fourier[j])
+                if is_polarised:
+                    add_polarised_source(
+                        below, above, u, harmonic, scratch.coupling, fourier[j], scratch.twist[j]
+                    )
                 if at >= 0:
                     add_horizon_peaks(
                         peaks, low, u, j, at, polar, emitted[0], degrees, series, fourier[j]
                     )
             for q in range(count):
                 add_orders(fourier, node[q], weights[q], cosine[q], degrees, series, out[i + q])
+            if is_polarised and stokes.shape[0] > 0:
+                fill_spin_functions(mu_here, scratch.spins)
+                add_twists(
+                    scratch.twist, node, weights, cosine, scratch.spins, scratch.turned,
+                    stokes[i : i + count],
+                )  # fmt: skip
         if samples.hits_ground[fan - begin]:
             length = samples.length[fan - begin]
             for q in range(count):

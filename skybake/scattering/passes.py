@@ -13,10 +13,19 @@ from skybake.jit.arguments import Flat, flatten
 from skybake.jit.workers import Workers
 from skybake.optics.delta_m import ScaledMedium
 from skybake.optics.legendre import legendre_polynomials
+from skybake.optics.matrix import scattering_plane
 from skybake.optics.medium import Array
+from skybake.optics.wigner import wigner
 from skybake.scattering.fans import group_rays
 from skybake.scattering.field import DiffuseField
-from skybake.scattering.grid import ORDER, Grid, empty_field, no_field, project
+from skybake.scattering.grid import (
+    ORDER,
+    Grid,
+    empty_field,
+    no_field,
+    project,
+    project_polarised,
+)
 from skybake.scattering.horizon_peaks import HorizonPeaks, no_horizon_peaks
 from skybake.scattering.multiple import add_diffuse, allocate_scratch, side_by_side
 from skybake.scattering.ray import trace_rays
@@ -38,12 +47,7 @@ def scatter_sunlight(
 
     The radiance is of shape (altitude, polar, sun, azimuth, wavelength).
     """
-    scaled = atmosphere.scaled
-    without_peaks = atmosphere._replace(
-        scaled=scaled._replace(peaked=scaled.peaked[:0], phase=scaled.medium.phase),
-        shells=altitude_shells(scaled.medium, FIRST_SHELLS),
-        field=no_field(scaled),
-    )
+    scaled, without_peaks = atmosphere.scaled, _without_peaks(atmosphere)
     constituents = scaled.medium.phase.shape[0]
     field = empty_field(scaled, grid.altitude, grid.sun_angle, ORDER)
     degree = np.arange(ORDER + 1)
@@ -58,7 +62,46 @@ def scatter_sunlight(
             radiance += light.single[:, c] * (polynomials.T @ series[c])
         radiances[i] = radiance.reshape(radiances.shape[1:])
         project(grid, i, radiances[i], field)
+        if len(scaled.matrix_moments):
+            stokes = _polarise(scaled, rays, light.single)
+            project_polarised(grid, i, stokes.reshape(*_shape(grid), 2, -1), field)
     return field, radiances
+
+
+def _without_peaks(atmosphere: Atmosphere) -> Atmosphere:
+    """Keep of an atmosphere what sunlight is scattered in once, as the solver has it."""
+    scaled = atmosphere.scaled
+    return atmosphere._replace(
+        scaled=scaled._replace(peaked=scaled.peaked[:0], phase=scaled.medium.phase),
+        shells=altitude_shells(scaled.medium, FIRST_SHELLS),
+        field=no_field(scaled),
+    )
+
+
+def polarise_sunlight(
+    atmosphere: Atmosphere, grid: Grid, workers: Workers
+) -> npt.NDArray[np.float32]:
+    """Q and U at a grid's nodes of light scattered once, as of `transport_field`."""
+    scaled, without_peaks = atmosphere.scaled, _without_peaks(atmosphere)
+    shape = grid.altitude.size, *_shape(grid), 2, scaled.mixture.size
+    stokes = np.empty(shape, np.float32)
+    for i in range(grid.altitude.size):
+        rays = rays_at(scaled, grid, i)
+        light = trace_rays(without_peaks, *rays.T, max_arc=FIRST_ARC, workers=workers)
+        stokes[i] = _polarise(scaled, rays, light.single).reshape(shape[1:])
+    return stokes
+
+
+def _polarise(scaled: ScaledMedium, rays: Array, single: Array) -> npt.NDArray[np.float32]:
+    """Q and U of light scattered once, the sun to the left, shape (ray, 2, wavelength)."""
+    degree = np.arange(ORDER + 1)
+    scale = ((2 * degree + 1) / (4.0 * math.pi))[:, None]
+    functions = wigner(0, 2, ORDER, rays[:, 3]).T
+    across = np.zeros((len(rays), single.shape[2]))
+    for c, moments in enumerate(scaled.matrix_moments[:, 0]):
+        across += single[:, c] * (functions @ (scale * moments))
+    turn = scattering_plane(*rays[:, 1:].T)
+    return (across[:, None] * turn[..., None]).astype(np.float32)
 
 
 def rays_at(scaled: ScaledMedium, grid: Grid, node: int) -> Array:
@@ -108,7 +151,8 @@ def scatter_field(
 
     Returns moments and radiance as `scatter_sunlight` does.
     """
-    radiance = transport_field(scaled, field, no_horizon_peaks(scaled), grid, batches, workers)
+    peaks = no_horizon_peaks(scaled)
+    radiance, stokes = transport_field(scaled, field, peaks, grid, batches, workers)
     scattered = field._replace(
         radiance=np.empty_like(field.radiance), ground=np.empty_like(field.ground)
     )
@@ -116,6 +160,8 @@ def scatter_field(
     def store(first: int, last: int) -> None:
         for i in range(first, last):
             project(grid, i, radiance[i], scattered)
+            if stokes.size:
+                project_polarised(grid, i, stokes[i], scattered)
 
     workers.run_rows(len(radiance), store)
     return scattered, radiance
@@ -128,17 +174,24 @@ def transport_field(
     grid: Grid,
     batches: list[Batch],
     workers: Workers,
-) -> npt.NDArray[np.float32]:
-    """Radiance at a grid's nodes of a field that is scattered once, as `scatter_sunlight`'s."""
+) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
+    """Radiance at a grid's nodes of a field that is scattered once, as `scatter_sunlight`'s.
+
+    Also Q and U, of shape (altitude, polar, sun, azimuth, 2, wavelength), or empty.
+    """
     shape = *_shape(grid), field.ground.shape[1]
     out = np.zeros((grid.altitude.size, math.prod(shape[:-1]), shape[-1]), np.float32)
+    rays_of_stokes = out.shape[1] if len(field.polarised) else 0
+    stokes = np.zeros((len(out), rays_of_stokes, 2 * shape[-1]), np.float32)
     light = [flatten(each) for each in (field, side_by_side(field), peaks, scaled)]
 
     def work(first: int, last: int) -> None:
         for batch in batches[first:last]:
             scratch = allocate_scratch(field, batch.fans.value)
             rays = batch.fans, batch.begin, batch.end, batch.samples
-            add_diffuse(*light, *rays, scratch, out[batch.node])
+            add_diffuse(*light, *rays, scratch, out[batch.node], stokes[batch.node])
 
     workers.run_rows(len(batches), work)
-    return out.reshape(-1, *shape)
+    if stokes.size:
+        stokes = stokes.reshape(len(out), *shape[:-1], 2, shape[-1])
+    return out.reshape(-1, *shape), stokes

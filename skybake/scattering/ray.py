@@ -136,6 +136,7 @@ class LightOfFans:
         self._has_aureole = atmosphere.aureole.source.shape[2] > 0
         self._bent = flatten(atmosphere.aureole), self._moments[0], self._sources[0]
         self._rays, self._single, self._diffuse = map(flatten, (fans, single, diffuse))
+        self._no_stokes = flatten(np.empty((0, 2 * diffuse.shape[1]), np.float32))
 
     def allocate(self) -> tuple[Flat | None, Flat | None]:
         """Make the work space that a thread needs for `add`."""
@@ -158,6 +159,6 @@ class LightOfFans:
         sunlit = allocate_sunlit(self._medium, most)
         add_single_scattering(*self._sources, *batch, sunlit, self._single, self._diffuse)
         if self._has_field:
-            add_diffuse(*self._moments, *batch, scratch[0], self._diffuse)
+            add_diffuse(*self._moments, *batch, scratch[0], self._diffuse, self._no_stokes)
         if self._has_aureole:
             add_aureole(*self._bent, *batch, scratch[1], self._diffuse)

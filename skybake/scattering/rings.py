@@ -80,7 +80,8 @@ def project_rings(grid: Grid, around: Rings, radiance: Array, field: DiffuseFiel
     """Moments about the zenith of light around the sun."""
     solid_angle = 2.0 * around.weight[:, None] * around.position_weight
     mu_s, sine_s = np.cos(grid.sun_angle), np.sin(grid.sun_angle)
-    moments = np.empty_like(field.radiance)
+    moments = np.zeros_like(field.radiance)
+    plain = field.harmonics.degree.size
     for i in range(len(radiance)):
         mu = around.mu[i]
         sines = np.sqrt(np.maximum(1.0 - mu**2, 0.0)) * sine_s[:, None, None]
@@ -90,7 +91,7 @@ def project_rings(grid: Grid, around: Rings, radiance: Array, field: DiffuseFiel
             basis = harmonics_at(field.harmonics, mu[j].ravel())
             basis *= np.cos(np.outer(azimuth[j].ravel(), field.harmonics.azimuthal))
             basis *= solid_angle[i, j].reshape(-1, 1)
-            moments[i, j] = basis.T @ radiance[i, j].reshape(len(basis), -1)
+            moments[i, j, :plain] = basis.T @ radiance[i, j].reshape(len(basis), -1)
     flux = solid_angle[0] * np.maximum(around.mu[0], 0.0)
     ground = np.einsum("jqp,jqpw->jw", flux, radiance[0], optimize=True)
     return field._replace(radiance=moments, ground=ground.astype(float))

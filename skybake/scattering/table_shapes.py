@@ -12,6 +12,7 @@ from skybake.optics.medium import Medium, pad_wavelengths
 from skybake.optics.phase import SCATTERING_ANGLES
 from skybake.scattering.aureole import ANGLES, ORDERS
 from skybake.scattering.horizon_peaks import SIDE
+from skybake.scattering.polarised import ORDERS as ORDERS_OF_SPIN
 from skybake.scattering.transmittance import SHAPE
 
 Shape = tuple[int | str, ...]
@@ -27,6 +28,7 @@ _SHAPES: dict[str, tuple[type, Shape]] = {
     "delta_m_scattering": (np.float64, _BY_CONSTITUENT),
     "delta_m_mixture": (np.float64, ("padded wavelength",)),
     "delta_m_phase": (np.float64, _PHASES),
+    "delta_m_matrix_moments": (np.float64, ("polarising", 3, "spin", "padded wavelength")),
     "scaled_scattering": (np.float64, _BY_CONSTITUENT),
     "scaled_extinction": (np.float64, _BY_CONSTITUENT),
     "shells": (np.float64, ("shell",)),
@@ -62,9 +64,11 @@ def are_tables_of(medium: Medium, arrays: Mapping[str, Any]) -> bool:
     order, peaked = int(arrays["order"]), arrays["delta_m_peaked"]
     related = {
         "moment": order + 1,
-        "harmonic": (order + 1) * (order + 2) // 2,
+        "harmonic": (order + 1) * (order + 2) // 2 + (ORDERS_OF_SPIN if sizes["polarising"] else 0),
         "phase function": sizes["constituent"] + len(PEAK_NODES) * sizes["peak"],
     }
+    if sizes["polarising"]:
+        related |= {"polarising": sizes["constituent"], "spin": order + 1}
     if sizes["aureole angle"] > 0:
         related |= {"aureole altitude": sizes["altitude"], "aureole sun": sizes["sun"]}
         related["aureole angle"] = ANGLES

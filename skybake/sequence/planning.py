@@ -15,6 +15,7 @@ from skybake.errors import ArgumentError, InputError
 from skybake.image.eclipsing_moon import eclipsing_moon
 from skybake.image.moonlight import Moonlight, moonlight_at
 from skybake.image.night import Night, night_at
+from skybake.image.night_scale import night_scaled
 from skybake.image.settings import MapSettings
 from skybake.image.sun_distance import sun_distance as distance_of_sun
 from skybake.optics.changes import PresetChanges
@@ -41,6 +42,7 @@ def plan_sequence(
     eclipses: bool = True,
     output: str | Path | None = None,
     preview: str | Path | bool = False,
+    night_scale: bool = False,
 ) -> Plan:
     """Return all frames of a sequence; nothing is computed yet.
 
@@ -79,6 +81,9 @@ def plan_sequence(
         Pattern of the maps' files, as ``sky.####.exr``; by default named after the world.
     preview : str, Path or bool, optional
         Pattern of the pictures' files, ``.png``; True for pictures beside the maps.
+    night_scale : bool, optional
+        Let 1.0 stand for what suits a night, see `skybake.image.night_scale`, if all frames are
+        of one.
 
     Raises
     ------
@@ -144,6 +149,9 @@ def plan_sequence(
                 attributes={} if moment is None else moment.attributes,
             )
         )
+    if night_scale:
+        scaled = night_scaled([frame.settings for frame in planned])
+        planned = [replace(frame, settings=own) for frame, own in zip(planned, scaled, strict=True)]
     return Plan(planets, tuple(planned), output, exposure_curve)
 
 
@@ -271,4 +279,4 @@ def _settings_at(
     if ev is not None:
         encoding = replace(encoding, ev=ev)
     clouds = settings.clouds if cloud_time is None else replace(settings.clouds, time=cloud_time)
-    return MapSettings(view, lighting, encoding, clouds, night, moonlight)
+    return MapSettings(view, lighting, encoding, clouds, night, moonlight, settings.sensor)

@@ -216,3 +216,21 @@ def _split_pixel(folded, theta, height, middle, share):
     begin = max(low, folded.zenith_horizon)
     share[1] = max(high - begin, 0.0) / height
     middle[1] = theta if share[1] > 0.999 else 0.5 * (begin + high)
+
+
+@kernel
+def blacken_negative(weights, pixels):
+    """Set pixels of a negative luminance to 0.
+
+    Parameters
+    ----------
+    weights : ndarray of float32, shape (3,)
+        Luminance is the product of a pixel's values with these.
+    pixels : ndarray of float32, shape (row, column, 3)
+        Is changed.
+    """
+    for i in range(pixels.shape[0]):
+        for j in range(pixels.shape[1]):
+            here = pixels[i, j]
+            if here[0] * weights[0] + here[1] * weights[1] + here[2] * weights[2] < 0.0:
+                here[0] = here[1] = here[2] = 0.0

@@ -27,7 +27,7 @@ from skybake.sky.source import Source, check_direction
 if TYPE_CHECKING:
     from skybake.sky.eclipse import Eclipse
 
-METHODS = ("full", "hillaire", "march")
+METHODS = ("full", "scalar", "hillaire", "march")
 WAVELENGTHS = np.linspace(380.0, 720.0, 16)
 """Default sampling of the visible spectrum; radiance is taken as linear between. [nm]"""
 
@@ -51,9 +51,9 @@ class Sky:
         What may be in front of the sun.
     wavelengths : array_like, optional
         Ascending; default 16 from 380 to 720 nm, or the preset's own. [nm]
-    method : {"full", "hillaire", "march"}, optional
-        All orders of scattering, Hillaire's closure, or single scattering alone, by direct
-        quadrature: a check.
+    method : {"full", "scalar", "hillaire", "march"}, optional
+        All orders of scattering with polarised light, or as if light were not polarised, Hillaire's
+        closure, or single scattering alone, by direct quadrature: a check.
     workers : Workers, optional
         Threads that do the work.
 
@@ -173,6 +173,20 @@ class Sky:
         """
         return (self.eclipse or self.skylight).radiance(directions)
 
+    def stokes(self, directions: Array) -> Array:
+        """Stokes vectors of atmosphere and ground, without the sun's own disc.
+
+        Parameters, result and errors are those of `Skylight.stokes`.
+
+        Raises
+        ------
+        InputError
+            If the sun is in eclipse, or the method knows no polarisation.
+        """
+        if self.eclipse is not None:
+            raise InputError("eclipse: polarisation must be asked for without a moon in front")
+        return self.skylight.stokes(directions)
+
     def radiance_per_irradiance(self, mu: Array, nu: Array) -> Array:
         """Radiance per unit irradiance of the sun, see `Skylight.radiance_per_irradiance`.
 
@@ -195,7 +209,7 @@ class Sky:
     def table_method(self) -> str:
         """Method of the tables that are looked up."""
         # Single scattering needs none, but the sun's disc looks up the columns of them all.
-        return "full" if self.method == "full" else "hillaire"
+        return "hillaire" if self.method == "march" else self.method
 
     @cached_property
     def atmosphere(self) -> Atmosphere:

@@ -17,7 +17,7 @@ from skybake.scattering.segments import trace_segments
 from skybake.scattering.tables import Atmosphere
 from skybake.sky.observer import Observer
 from skybake.sky.source import Source
-from skybake.sky.spectral_table import SpectralTable, table_geometry
+from skybake.sky.spectral_table import SpectralTable, TableGeometry, table_geometry
 
 
 class Segments(NamedTuple):
@@ -118,6 +118,28 @@ class Skylight:
         radiance: Array = (light.single * phase).sum(axis=1) + light.diffuse
         return radiance.reshape(*mu.shape, -1)
 
+    def stokes(self, directions: Array) -> Array:
+        """Stokes vectors by all sources, without their own discs, which are not polarised.
+
+        Parameters
+        ----------
+        directions : array_like, shape (..., 3)
+            As of `radiance`.
+
+        Returns
+        -------
+        ndarray of float64, shape (..., 4, wavelength)
+            As `skybake.sky.stokes` defines them. [W m⁻² sr⁻¹ nm⁻¹]
+
+        Raises
+        ------
+        InputError
+            If a direction is invalid, or the atmosphere was solved for without polarisation.
+        """
+        from skybake.sky.stokes import stokes_of
+
+        return stokes_of(self, unit_directions(directions))
+
     def segments(self, directions: Array, distances: Array) -> Segments:
         """Light gathered up to given distances, by all sources.
 
@@ -157,27 +179,36 @@ class Skylight:
         shape = *shape, ends.shape[-1], count
         return Segments(radiance.reshape(shape), transmittance.reshape(shape))
 
-    def spectral_table(self, source: Source, *, finely: bool = False) -> SpectralTable:
+    def spectral_table(
+        self, source: Source, *, finely: bool = False, coarsely: bool = False
+    ) -> SpectralTable:
         """Trace the rays from which pixels get the light of one source.
 
         Parameters
         ----------
         source : Source
             What lights the atmosphere.
-        finely : bool, optional
+        finely, coarsely : bool, optional
             As of `table_geometry`.
         """
+        geometry = self.table_geometry(source, finely=finely, coarsely=coarsely)
+        return SpectralTable(
+            geometry, self._light(source, geometry.mu.ravel(), geometry.nu.ravel())
+        )
+
+    def table_geometry(
+        self, source: Source, *, finely: bool = False, coarsely: bool = False
+    ) -> TableGeometry:
+        """Return where the nodes of `spectral_table` are."""
         medium = self.atmosphere.medium
-        geometry = table_geometry(
+        return table_geometry(
             self.radius,
             medium.r_bottom,
             medium.r_top,
             source.zenith,
             has_aureole=self.atmosphere.aureole.source.shape[2] > 0,
             finely=finely,
-        )
-        return SpectralTable(
-            geometry, self._light(source, geometry.mu.ravel(), geometry.nu.ravel())
+            coarsely=coarsely,
         )
 
     @property

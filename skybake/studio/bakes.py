@@ -11,6 +11,7 @@ from typing import Any
 
 from skybake.baking import default_path
 from skybake.baking.checks import check_targets
+from skybake.baking.paths import preview_beside
 from skybake.baking.write import bake_scene
 from skybake.errors import CancelledError, InputError, SkybakeError
 from skybake.studio.reader import Reader, Request
@@ -51,15 +52,15 @@ class Bakes:
         """
         request = self._reader.read(state)
         path = self._target(output, request)
-        check_targets(path, request.settings, None, ())
+        check_targets(path, request.settings, _preview(request, path), ())
         number, cancel = next(self._numbers), Event()
         self._running[number] = cancel
         self._thread.submit(self._bake, number, request, path, cancel, tell)
         return number
 
-    def cancel(self, number: int) -> None:
+    def cancel(self, number: Any) -> None:
         """Stop a bake, if it is running or waiting."""
-        if number in self._running:
+        if isinstance(number, int) and number in self._running:
             self._running[number].set()
 
     def close(self) -> None:
@@ -80,6 +81,8 @@ class Bakes:
             baked = bake_scene(
                 scene,
                 path,
+                preview=_preview(request, path),
+                picture=request.picture,
                 attributes=request.attributes,
                 progress=lambda share: report("baking", share),
                 stage=lambda name: report({"pixels": "baking"}.get(name, name)),
@@ -91,12 +94,12 @@ class Bakes:
         except Exception as error:  # noqa: BLE001 - the page is told, the server goes on
             tell({"bake": number, "error": f"bake: failed unexpectedly ({error!r})"})
         else:
-            files = [str(file.relative_to(self._folder)) for file in baked.files]
+            files = [*baked.files, *([] if baked.preview is None else [baked.preview])]
             tell(
                 {
                     "bake": number,
                     "done": True,
-                    "files": files,
+                    "files": [str(file.relative_to(self._folder)) for file in files],
                     "folder": str(self._folder),
                     "warnings": list(baked.warnings),
                 }
@@ -118,3 +121,7 @@ class Bakes:
     def _is_within(self, path: Path) -> bool:
         """Whether a path is in the folder when all symbolic links have been followed."""
         return (self._folder / path).resolve().is_relative_to(self._folder)
+
+
+def _preview(request: Request, path: Path) -> Path | None:
+    return preview_beside(path) if request.has_preview else None

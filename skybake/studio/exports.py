@@ -8,6 +8,7 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
+from skybake.baking.paths import default_path, preview_beside
 from skybake.optics.changes import PresetChanges
 from skybake.preset import load_document
 from skybake.preset.find import is_path
@@ -73,6 +74,10 @@ def python_text(request: Request, output: str | None = None) -> str:
     inner = "".join(f"\n    {name}={python_value(one)}," for name, one in parts.items())
     closing = "\n" if parts else ""
     arguments = ["planet", python_value(output), "settings"]
+    if request.has_preview:
+        map_name = output or default_path(request.planet, request.settings)
+        arguments.append(f"preview={python_value(preview_beside(Path(map_name)))}")
+        arguments.append(f"picture={python_value(request.picture)}")
     if request.attributes:
         arguments.append(f"attributes={python_value(request.attributes)}")
     return "\n".join(

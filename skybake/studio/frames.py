@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -43,32 +43,26 @@ def halves(pixels: Pixels) -> tuple[bytes, float]:
     return (pixels / np.float32(scale)).astype("<f2").tobytes(), scale
 
 
-def refinements(scene: Scene, projection: Projection) -> Iterator[Pixels]:
-    """Yield the picture of a scene, coarse at first and then in full.
+def coarse(projection: Projection) -> Projection | None:
+    """Return the projection of a coarse picture, or None where the full one is no larger."""
+    if isinstance(projection, Equirect) and projection.width > COARSE_WIDTH:
+        return Equirect(COARSE_WIDTH)
+    return None
+
+
+def picture(scene: Scene, projection: Projection) -> Pixels:
+    """Return the picture of a scene, shape (row, column, 3).
 
     Raises
     ------
     CancelledError
         If the scene's workers were stopped.
     """
-    coarse = _coarse(projection)
-    if coarse is not None:
-        yield _pixels(scene, coarse, lambda: None)
-    yield _pixels(scene, projection, scene.workers.check)
-
-
-def _coarse(projection: Projection) -> Projection | None:
-    if isinstance(projection, Equirect) and projection.width > COARSE_WIDTH:
-        return Equirect(COARSE_WIDTH)
-    return None
-
-
-def _pixels(scene: Scene, projection: Projection, check: Callable[[], None]) -> Pixels:
     (canvas,) = projection.canvases()
     raster = Raster(scene, canvas)
     pixels = np.empty((canvas.height, canvas.width, 3), np.float32)
     for first in range(0, canvas.height, BAND_ROWS):
-        check()
+        scene.workers.check()
         last = min(first + BAND_ROWS, canvas.height)
         pixels[first:last] = raster.rows(first, last)
     return pixels

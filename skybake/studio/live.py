@@ -44,6 +44,7 @@ class Live:
         self._answers: asyncio.Queue[Answer] = asyncio.Queue()
         self._running: dict[str, ViewRequest] = {}
         self._waiting: dict[str, ViewRequest] = {}
+        self._tasks: set[asyncio.Task[None]] = set()
         self._loop = asyncio.get_running_loop()
         self._socket: web.WebSocketResponse | None = None
 
@@ -61,7 +62,8 @@ class Live:
             self._waiting.clear()
             for view in self._running.values():
                 view.cancel.set()
-            sender.cancel()
+            for task in (sender, *self._tasks):
+                task.cancel()
         return socket
 
     async def close(self) -> None:
@@ -81,6 +83,9 @@ class Live:
             if "cancel" in data:
                 self._bakes.cancel(data["cancel"])
                 return
+            if "stop" in data:
+                self._stop(str(data["stop"]))
+                return
             number = data.get("id")
             if type(number) is not int:
                 raise InputError(f"id: must be a whole number, got {number!r}")
@@ -93,7 +98,10 @@ class Live:
         if running is None:
             if len(self._running) >= MOST_TAGS:
                 raise InputError(f"tag: must be at most {MOST_TAGS} at once, got {tag!r}")
-            self._start(tag, view)
+            self._running[tag] = view
+            task = asyncio.create_task(self._run(tag))
+            self._tasks.add(task)
+            task.add_done_callback(self._tasks.discard)
             return
         overtaken = self._waiting.get(tag)
         if overtaken is not None:
@@ -102,17 +110,26 @@ class Live:
         is_same = self._reader.is_same_world(running.state, view.state)
         running.supersede(has_same_world=is_same)
 
-    def _start(self, tag: str, view: ViewRequest) -> None:
-        self._running[tag] = view
-        work = partial(answer, view, self._reader, self._scenes, self.tell)
-        done = self._loop.run_in_executor(self._executor, work)
-        done.add_done_callback(lambda _: self._next(tag))
+    def _stop(self, tag: str) -> None:
+        """Stop the work on a tag's picture, and forget the request that waits for it."""
+        waiting = self._waiting.pop(tag, None)
+        if waiting is not None:
+            self.tell({"id": waiting.number, "cancelled": True})
+        if tag in self._running:
+            self._running[tag].cancel.set()
 
-    def _next(self, tag: str) -> None:
-        del self._running[tag]
-        view = self._waiting.pop(tag, None)
-        if view is not None:
-            self._start(tag, view)
+    async def _run(self, tag: str) -> None:
+        """Answer the requests of a tag, as long as there are any."""
+        while True:
+            view = self._running[tag]
+            work = partial(answer, view, self._reader, self._scenes, self.tell)
+            await self._loop.run_in_executor(self._executor, work)
+            # A page that takes pictures slower than they are made gets the newest alone.
+            await self._answers.join()
+            if tag not in self._waiting:
+                del self._running[tag]
+                return
+            self._running[tag] = self._waiting.pop(tag)
 
     async def _send_all(self, socket: web.WebSocketResponse) -> None:
         while True:
@@ -124,6 +141,7 @@ class Live:
                     await socket.send_json(message)
             except ConnectionError:
                 return
+            self._answers.task_done()
 
 
 def _read(text: str) -> dict[str, Any]:

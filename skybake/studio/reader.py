@@ -48,6 +48,8 @@ class Request:
         What is changed of it.
     attributes : mapping of str to Any, or None
         What files state of time and place.
+    has_preview : bool
+        Whether the command writes a picture beside the map.
     """
 
     planet: Planet
@@ -56,6 +58,7 @@ class Request:
     preset: str
     changes: PresetChanges
     attributes: Mapping[str, Any] | None = None
+    has_preview: bool = False
 
 
 @dataclass(frozen=True)

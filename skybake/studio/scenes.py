@@ -11,7 +11,8 @@ from threading import Event, Lock
 from skybake.image.aim import Aim, Lookout, aimed
 from skybake.image.scene import Scene
 from skybake.image.settings import Encoding, MapSettings, View
-from skybake.pipeline import Pipeline
+from skybake.jit.workers import ALL_CPUS
+from skybake.pipeline.stages import CoarseStages, KeptStages
 from skybake.projection import Equirect, Perspective
 from skybake.studio.reader import Request
 
@@ -29,10 +30,11 @@ Stage = Callable[[str, float | None], None]
 
 
 class Scenes:
-    """Makes scenes on one pipeline, and keeps the last of them with what they have computed."""
+    """Makes scenes of shared stages, and keeps the last of them with what they have computed."""
 
     def __init__(self) -> None:
-        self._pipeline = Pipeline(keep=KEPT_SUNS)
+        self._stages = KeptStages(KEPT_SUNS)
+        self._coarse_stages = CoarseStages(KEPT_SUNS)
         self._kept: OrderedDict[str, Scene] = OrderedDict()
         self._lock = Lock()
 
@@ -53,7 +55,18 @@ class Scenes:
             if kept is not None:
                 self._kept.move_to_end(_key(request, settings))
                 return kept
-        return self._pipeline.scene(request.planet, settings, cancel)
+        return self._made(request, settings, cancel, self._stages)
+
+    def first_glance(self, request: Request, scene: Scene, cancel: Event) -> Scene:
+        """Return a scene that looks nearly the same and is there sooner.
+
+        It is the scene itself where no ray has to be traced any more, few determine all, or clouds
+        take longest.
+        """
+        is_traced = self._stages.has_traced(scene.sky)
+        if scene.planet.clouds or is_traced or not CoarseStages.has_fewer_rays(scene.sky):
+            return scene
+        return self._made(request, scene.settings, cancel, self._coarse_stages)
 
     def keep(self, request: Request, scene: Scene) -> None:
         """Keep a scene whose pixels have all been computed: nobody stops it any more."""
@@ -64,7 +77,11 @@ class Scenes:
 
     def map_scene(self, request: Request, cancel: Event) -> Scene:
         """Return the scene of the map itself, on the same pipeline."""
-        return self._pipeline.scene(request.planet, request.settings, cancel)
+        return self._made(request, request.settings, cancel, self._stages)
+
+    @staticmethod
+    def _made(request: Request, settings: MapSettings, cancel: Event, stages: KeptStages) -> Scene:
+        return Scene(request.planet, settings, ALL_CPUS.with_cancel(cancel), stages)
 
 
 def equirect_settings(request: Request) -> MapSettings:
@@ -81,14 +98,17 @@ def planet_settings(request: Request, size: tuple[int, int]) -> MapSettings:
     return _seen(request, View(altitude, picture))
 
 
-def prepare(scene: Scene, stage: Stage) -> None:
-    """Compute what pixels are made of, and say what takes long."""
-    is_far = scene.settings.view.altitude > scene.planet.atmosphere_top
+def solve(scene: Scene, stage: Stage) -> None:
+    """Solve the atmosphere of a scene, and say so if it is not solved yet."""
     if not scene.sky.is_solved:
         stage(SOLVING, None)
         _ = scene.sky.atmosphere
         stage(TRACING, None)
-    elif is_far:
+
+
+def prepare(scene: Scene, stage: Stage) -> None:
+    """Compute what pixels are made of, and say what takes long."""
+    if scene.settings.view.altitude > scene.planet.atmosphere_top:
         # The terminator needs many rays.
         stage(TRACING, None)
     _ = scene.table

@@ -13,14 +13,13 @@ from typing import Any
 from aiohttp import web
 
 from skybake.errors import InputError, SkybakeError
-from skybake.preset import preset_names
 from skybake.studio.bakes import Bakes
 from skybake.studio.day import day_of
 from skybake.studio.display import display_message
 from skybake.studio.exports import exported
 from skybake.studio.guard import LARGEST_BODY, Guard
 from skybake.studio.live import Live
-from skybake.studio.preset_pictures import PresetPictures, preset_list
+from skybake.studio.presets import preset_list, preset_picture
 from skybake.studio.reader import OptionError, Reader
 from skybake.studio.scenes import Scenes
 from skybake.studio.state import state_from_json
@@ -54,7 +53,6 @@ class Studio:
         self._reader, self._preset = reader, preset
         self._scenes = Scenes()
         self._bakes = Bakes(reader, self._scenes, folder)
-        self._pictures = PresetPictures()
         self._threads = ThreadPoolExecutor(_THREADS, thread_name_prefix="studio")
         self._pages: set[Live] = set()
 
@@ -139,10 +137,10 @@ class Studio:
 
     async def _preset_picture(self, request: web.Request) -> web.StreamResponse:
         name = request.match_info["name"]
-        if name not in preset_names():
+        picture = preset_picture(name)
+        if picture is None:
             raise web.HTTPNotFound
-        made = self._pictures.picture(name)
-        return web.Response(body=await asyncio.wrap_future(made), content_type="image/png")
+        return web.Response(body=picture, content_type="image/jpeg")
 
     async def _live(self, request: web.Request) -> web.StreamResponse:
         live = Live(self._reader, self._scenes, self._bakes, self._threads)
@@ -169,12 +167,12 @@ class Studio:
             live.tell(message)
 
     async def _in_thread(self, work: Callable[..., Any], *arguments: Any) -> Any:
-        return await asyncio.get_running_loop().run_in_executor(self._threads, work, *arguments)
+        # Not in the threads of pictures, which may all be at work.
+        return await asyncio.to_thread(work, *arguments)
 
     async def _close(self, _: web.Application) -> None:
         for live in tuple(self._pages):
             await live.close()
-        self._pictures.close()
         self._threads.shutdown(wait=False, cancel_futures=True)
         await asyncio.to_thread(self._bakes.close)
 

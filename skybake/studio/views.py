@@ -5,7 +5,7 @@ from __future__ import annotations
 import shlex
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from threading import Event
+from threading import Event, Lock
 from typing import Any
 
 from skybake.errors import CancelledError, InputError, SkybakeError
@@ -13,9 +13,16 @@ from skybake.image.scene import Scene
 from skybake.image.settings import Encoding
 from skybake.projection import Equirect, Projection
 from skybake.studio.figures import exposures, figures_of
-from skybake.studio.frames import LARGEST_WIDTH, halves, message, refinements
+from skybake.studio.frames import LARGEST_WIDTH, coarse, halves, message, picture
 from skybake.studio.reader import OptionError, Reader, Request
-from skybake.studio.scenes import SOLVING, Scenes, equirect_settings, planet_settings, prepare
+from skybake.studio.scenes import (
+    SOLVING,
+    Scenes,
+    equirect_settings,
+    planet_settings,
+    prepare,
+    solve,
+)
 from skybake.studio.state import State, state_from_json
 
 Send = Callable[[dict[str, Any] | bytes], None]
@@ -23,6 +30,27 @@ Send = Callable[[dict[str, Any] | bytes], None]
 
 KINDS = ("equirect", "planet")
 SMALLEST = 16
+
+
+class Cancel(Event):
+    """Stops work, but not what is kept of it once it is finished."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._finishing = Lock()
+        self._is_finished = False
+
+    def set(self) -> None:
+        """Stop the work, if it is not finished."""
+        with self._finishing:
+            if not self._is_finished:
+                super().set()
+
+    def finish(self) -> bool:
+        """Let nothing stop it any more; returns whether nothing has."""
+        with self._finishing:
+            self._is_finished = not self.is_set()
+            return self._is_finished
 
 
 @dataclass
@@ -39,7 +67,7 @@ class ViewRequest:
         The whole sky, or the planet from afar.
     size : tuple of int
         Width and height. [pixel]
-    cancel : threading.Event
+    cancel : Cancel
         Stops the work.
     superseded : threading.Event
         Set when there is a newer request.
@@ -54,7 +82,7 @@ class ViewRequest:
     state: State
     kind: str
     size: tuple[int, int]
-    cancel: Event = field(default_factory=Event)
+    cancel: Cancel = field(default_factory=Cancel)
     superseded: Event = field(default_factory=Event)
     is_slow: bool = False
     is_solving: bool = False
@@ -126,7 +154,6 @@ def _answer(view: ViewRequest, reader: Reader, scenes: Scenes, send: Send) -> No
         view.is_solving = name == SOLVING
         send({"id": view.number, "stage": name, "progress": share})
 
-    prepare(scene, stage)
     header = {
         "id": view.number,
         "kind": view.kind,
@@ -134,20 +161,31 @@ def _answer(view: ViewRequest, reader: Reader, scenes: Scenes, send: Send) -> No
         "type": "float16",
         "command": shlex.join(reader.words(view.state)),
     }
-    figures = None
-    for pixels in refinements(scene, projection):
-        if figures is None:
-            figures = figures_of(scene, request.picture)
+
+    def show(shown: Scene, seen: Projection, figures: dict[str, Any]) -> None:
+        pixels = picture(shown, seen)
         height, width = pixels.shape[:2]
         texels, factor = halves(pixels)
         scale = factor * Encoding().white_luminance
-        shown = {**figures, **exposures(figures, request.picture, scale)}
-        is_final = width == view.size[0]
+        is_final = shown is scene and width == view.size[0]
         sized = {"width": width, "height": height, "scale": scale, "final": is_final}
-        send(message({**header, **sized, "figures": shown}, texels))
-        if not is_final:
-            view.enter_slow()
-    scenes.keep(request, scene)
+        lit = {**figures, **exposures(figures, request.picture, scale)}
+        send(message({**header, **sized, "figures": lit}, texels))
+
+    solve(scene, stage)
+    first = scenes.first_glance(request, scene, view.cancel)
+    prepare(first, stage)
+    figures = figures_of(first, request.picture)
+    glance = coarse(projection)
+    if glance is not None:
+        show(first, glance, figures)
+        view.enter_slow()
+    if first is not scene:
+        prepare(scene, stage)
+        figures = figures_of(scene, request.picture)
+    show(scene, projection, figures)
+    if view.cancel.finish():
+        scenes.keep(request, scene)
 
 
 def _scene(view: ViewRequest, request: Request, scenes: Scenes) -> tuple[Scene, Projection]:

@@ -68,7 +68,7 @@ def test_a_moon_by_hand_stands_where_it_is_put(folder):
 
 
 def test_the_disc_is_a_layer_that_adds_up_with_the_others(folder):
-    render(*NIGHT, "--layers", "--units", "nits", "-o", "a.exr")
+    render(*NIGHT, "--layers", "--pixel", "float", "-o", "a.exr")
     parts = {
         name: np.concatenate(list(ImageFile(Path("a.exr"), part=name).bands()))
         for name in ("beauty", "sky", "sun", "moon", "stars")

@@ -75,3 +75,17 @@ def test_coarse_pixels_are_means_of_several_rays_and_fine_ones_are_one():
     directions = downward(0.05, 800)
     noise = [transmittances(clouds, 2000.0, 0.002, directions, n)[:, 0].std() for n in (1, 4)]
     assert noise[1] < 0.5 * noise[0]
+
+
+def test_the_number_of_rays_changes_from_pixel_to_pixel_and_not_at_an_edge():
+    clouds = field("cumulus")
+    directions = downward(0.05, 400)
+    few, more, mixed = (
+        transmittances(clouds, 2000.0, 0.002, directions, n)[:, 0] for n in (1, 2, 1.25)
+    )
+    is_different = few != more
+    has_more = (mixed == more)[is_different]
+    assert ((mixed == more) | (mixed == few)).all()
+    assert 0.15 < has_more.mean() < 0.35
+    changes = np.count_nonzero(np.diff(has_more.astype(int)))
+    assert changes > 0.25 * has_more.size

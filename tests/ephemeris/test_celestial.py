@@ -95,3 +95,36 @@ def test_the_sun_of_mars_is_among_its_stars(solar_longitude, hour_angle):
     assert math.remainder(math.atan2(east, -south) - azimuth, 2 * math.pi) == pytest.approx(
         0.0, abs=math.radians(0.01)
     )
+
+
+def seen(right_ascension, declination, *, sidereal_hours, latitude):
+    """Elevation and bearing of what has hours and degrees, by a planisphere. [deg]"""
+    frame = CelestialFrame("earth", math.radians(15.0 * sidereal_hours), math.radians(latitude))
+    place = np.radians([[15.0 * right_ascension, declination]])
+    ((east, up, south),) = frame.directions(place)
+    return math.degrees(math.asin(up)), math.degrees(math.atan2(east, -south)) % 360.0
+
+
+def test_orion_rises_on_its_side_and_stands_upright_in_the_south():
+    # From Paris: the belt rises due east, and culminates 40 deg high in the south.
+    rises = seen(5.6, -1.2, sidereal_hours=5.6 - 5.85, latitude=48.9)
+    assert rises == pytest.approx((0.0, 92.0), abs=3.0)
+    belt = seen(5.6, -1.2, sidereal_hours=5.6, latitude=48.9)
+    assert belt == pytest.approx((39.9, 180.0), abs=0.2)
+    betelgeuse = seen(5.919, 7.41, sidereal_hours=5.6, latitude=48.9)
+    rigel = seen(5.242, -8.2, sidereal_hours=5.6, latitude=48.9)
+    # Betelgeuse at the upper left, in the east of Rigel at the lower right.
+    assert betelgeuse[0] > belt[0] > rigel[0]
+    assert betelgeuse[1] < 180.0 < rigel[1]
+
+
+def test_the_southern_cross_stands_upright_over_sydney():
+    acrux = seen(12.443, -63.1, sidereal_hours=12.5, latitude=-33.9)
+    gacrux = seen(12.519, -57.11, sidereal_hours=12.5, latitude=-33.9)
+    # In the south, with its long axis to the pole below.
+    assert acrux == pytest.approx((60.8, 180.0), abs=1.0)
+    assert gacrux == pytest.approx((66.8, 180.0), abs=1.0)
+    # Half a day later it is upside down, 7 deg above the horizon.
+    assert seen(12.443, -63.1, sidereal_hours=0.443, latitude=-33.9)[0] == pytest.approx(
+        7.0, abs=0.2
+    )

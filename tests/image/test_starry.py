@@ -105,6 +105,27 @@ def test_the_glow_of_the_night_adds_to_twilight():
     np.testing.assert_allclose(glow, pixels(-60.0, night), rtol=1e-3, atol=1e-9)
 
 
+@pytest.mark.slow
+def test_the_glow_of_the_night_appears_without_a_jump(monkeypatch):
+    night = Night(WINTER, stars="exclude")
+    world = load_preset("earth-hillaire2020")
+
+    # The sun is put there by hand, beside the ecliptic of this frame.
+    def at(elevation):
+        return scene(world, Equirect(64), sun_elevation=elevation, night=night, method="hillaire")
+
+    high, low = math.radians(-2.0), math.radians(-14.0)
+    for _ in range(9):
+        middle = 0.5 * (high + low)
+        high, low = (middle, low) if at(middle).night_glow is None else (high, middle)
+    above, below = at(high), at(low)
+    assert (above.night_glow is None, below.night_glow is None) == (True, False)
+    monkeypatch.setattr("skybake.image.outshone.glow_is_outshone", lambda _: False)
+    with_it = image_of_scene(at(high)).pixels @ above.luminance
+    without = image_of_scene(above).pixels @ above.luminance
+    assert (with_it / without).max() < 1.005
+
+
 def test_a_map_that_is_turned_has_the_stars_turned():
     plain, turned = (
         image_of_scene(scene(rotation=math.radians(each))).pixels for each in (0.0, 90.0)

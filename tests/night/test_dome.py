@@ -7,7 +7,8 @@ import pytest
 
 from skybake.angles import direction_from_angles
 from skybake.ephemeris.celestial import CelestialFrame
-from skybake.night.dome import ABOVE, NightDome, row_zeniths
+from skybake.night.air import ABOVE, row_zeniths
+from skybake.night.dome import NightDome
 from skybake.sky.sky import Sky
 
 GALACTIC_POLE_OVERHEAD = CelestialFrame("earth", math.radians(192.9), math.radians(27.1))
@@ -101,3 +102,15 @@ def test_milky_way_is_where_its_stars_are():
     up = direction_from_angles(bearing, elevation[:, None])[..., 1]
     luminance = night.xyz[:ABOVE, :, 1]
     assert luminance[up > 0.97].mean() > 3.0 * np.median(luminance[(up > 0.3) & (up < 0.6)])
+
+
+def test_a_world_of_three_wavelengths_has_the_same_night():
+    frame = GALACTIC_POLE_OVERHEAD
+
+    def night(preset):
+        sky = Sky(preset, math.radians(-60.0), method="hillaire")
+        return NightDome(sky, frame).xyz
+
+    paper, earth = night("earth-hillaire2020"), night("earth-clear")
+    np.testing.assert_allclose(paper[0, 0], earth[0, 0], rtol=0.1)
+    assert paper[:ABOVE].min() > 0.0

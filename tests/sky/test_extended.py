@@ -7,7 +7,7 @@ import pytest
 
 from skybake.preset import load_preset
 from skybake.sky.disc import Disc
-from skybake.sky.extended import STEPS, scattered_light, truncated_transmittance
+from skybake.sky.extended import STEPS, ExtendedSky
 from skybake.sky.sky import Sky
 
 THETA = np.linspace(0.0, 0.5 * math.pi, STEPS)
@@ -22,10 +22,10 @@ SHAPES = {
 
 def seen(sky, shape, zenith):
     """Light of a source, straight and scattered, at zenith angles."""
-    solved, radius, mu = sky.skylight.atmosphere, sky.skylight.radius, np.cos(zenith)
-    light = scattered_light(solved, radius, mu, shape(THETA))
+    extended, mu = ExtendedSky(sky.skylight.atmosphere, sky.skylight.radius), np.cos(zenith)
+    light = extended.scattered(mu, shape(THETA))
     above = np.where(zenith <= 0.5 * math.pi, shape(np.minimum(zenith, 0.5 * math.pi)), 0.0)
-    return light + truncated_transmittance(solved, radius, mu) * above[:, None]
+    return light + extended.passing(mu) * above[:, None]
 
 
 @pytest.fixture(scope="module")

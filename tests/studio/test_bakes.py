@@ -58,6 +58,16 @@ def test_a_bake_writes_what_the_command_writes(server):
     assert (server.folder / "sky.exr").read_bytes() == expected.read_bytes()
 
 
+def test_a_look_is_baked_as_a_preview_beside_the_map(server):
+    state = {"options": {"size": "32x16", "preview-ev": "12", "view": "aces2"}}
+    assert bake(server, state, "look.exr")["files"] == ["look.exr", "look.png"]
+    expected = server.folder / "command.exr"
+    arguments = ("--size", "32x16", "--preview-ev", "12", "--view", "aces2", "--preview")
+    assert invoke("render", *arguments, "-o", expected).exit_code == 0
+    made = (server.folder / "look.png").read_bytes()
+    assert made == expected.with_suffix(".png").read_bytes()
+
+
 def test_a_bake_without_a_name_takes_the_usual_one(server):
     message = bake(server, {"options": {"size": "32x16", "sun": "20deg"}}, None)
     assert message["files"] == ["earth_sun20.00deg_equirect.exr"]

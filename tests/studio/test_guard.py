@@ -7,6 +7,7 @@ from contextlib import closing
 import pytest
 
 from skybake.studio.guard import LARGEST_BODY
+from skybake.studio.server import PAGE
 from tests.studio.servers import serving
 
 API = ("/", "/api/options", "/api/world", "/api/live", "/api/parse?option=sun&text=5deg")
@@ -122,3 +123,15 @@ def test_answers_let_a_browser_load_nothing_from_elsewhere(server):
         assert "frame-ancestors 'none'" in policy
         assert "unsafe" not in policy
         assert headers["Cache-Control"] == "no-store"
+
+
+def test_the_page_and_all_its_parts_are_served(server):
+    """They are data of the package, which an installation has to hold."""
+    status, headers, body = server.request("/")
+    assert (status, headers["Content-Type"]) == (200, "text/html; charset=utf-8")
+    assert body.lower().startswith(b"<!doctype html>")
+    parts = [path for path in PAGE.iterdir() if path.is_file()]
+    assert {path.suffix for path in parts} >= {".html", ".js", ".css"}
+    for path in parts:
+        status, headers, body = server.request(f"/page/{path.name}", token=False)
+        assert (status, body) == (200, path.read_bytes()), path.name

@@ -6,7 +6,7 @@ from skybake.commands.render_reader import RenderReader
 from skybake.errors import SkybakeError
 from skybake.preset import load_preset, preset_names
 from skybake.studio.day import day_of
-from skybake.studio.preset_pictures import PresetPictures, preset_list
+from skybake.studio.presets import preset_list, preset_picture
 from skybake.studio.state import State
 from skybake.studio.world import comments_of, world_of
 
@@ -98,8 +98,7 @@ def test_presets_have_titles_and_pictures():
     assert set(presets) == set(preset_names())
     assert presets["mars"]["title"] == "Mars"
     assert presets["mars"]["summary"] == "moderate dust over bright Arabia"
-    pictures = PresetPictures()
-    made = pictures.picture("earth")
-    assert made is pictures.picture("earth")
-    assert made.result().startswith(b"\x89PNG")
-    pictures.close()
+    pictures = {name: preset_picture(name) for name in presets}
+    assert all(picture.startswith(b"\xff\xd8\xff") for picture in pictures.values())
+    assert len(set(pictures.values())) == len(presets)
+    assert preset_picture("vulcan") is None

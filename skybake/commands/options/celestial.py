@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
 DAYS_FROM_TODAY = {"yesterday": -1, "today": 0, "tomorrow": 1}
 
+# Of a square arcsecond: the brightest and the natural zenith, and of 1 cd/m2. [mag]
+_BRIGHTEST_ZENITH, _NATURAL_ZENITH, _CANDELA_MAGNITUDE = 13.0, 22.0, 12.58
+
 # As of star.distance_au in presets. [au]
 _NEAREST, _FARTHEST = 1e-3, 1e5
 
@@ -60,6 +63,37 @@ def stars(text: str) -> float | str:
         raise click.BadParameter(
             f"must be include, exclude, only or a magnitude such as 4.5, got {text!r}"
         ) from None
+
+
+def light_pollution(text: str) -> tuple[float, float | None]:
+    """Read ``20mag``, ``1.5mcd`` or ``off``, with the bearing of a city as ``20mag,90deg``.
+
+    Returns
+    -------
+    luminance : float
+        Of the zenith by lamps; a magnitude is that of all its light, of which a natural sky has
+        that of 22 mag. [cd m⁻²]
+    azimuth : float or None
+        [rad]
+    """
+    if text == "off":
+        return 0.0, None
+    level, comma, where = text.partition(",")
+    found = re.fullmatch(r"(\d+(?:\.\d*)?|\.\d+)(mag|mcd)", level.strip(), re.ASCII)
+    if found is None:
+        raise click.BadParameter(f"must be off or such as 20mag or 1.5mcd,90deg, got {text!r}")
+    value = float(found[1])
+    azimuth = bearing(where) if comma else None
+    if found[2] == "mcd":
+        return 1e-3 * value, azimuth
+    if not _BRIGHTEST_ZENITH <= value < _NATURAL_ZENITH:
+        raise click.BadParameter(
+            f"must be from {_BRIGHTEST_ZENITH:g}mag to below {_NATURAL_ZENITH:g}mag, that of a "
+            f"natural sky, got {text}"
+        )
+    luminances = (10.0 ** (0.4 * (_CANDELA_MAGNITUDE - each)) for each in (value, _NATURAL_ZENITH))
+    total, natural = luminances
+    return total - natural, azimuth
 
 
 def solar_longitude(text: str) -> float:

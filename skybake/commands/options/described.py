@@ -22,10 +22,10 @@ _GROUPS: dict[str, tuple[str, ...]] = {
     ),
     "Observer": ("altitude", "below_horizon"),
     "Clouds": ("clouds", "cloud_time", "clouds_quality"),
-    "Moon": ("moon", "eclipse"),
-    "Night": ("night", "stars", "airglow", "zodiacal"),
+    "Moon": ("moon", "eclipse", "moon_elevation", "moon_azimuth", "moon_phase"),
+    "Night": ("night", "stars", "airglow", "zodiacal", "light_pollution"),
     "Sun's disc": ("sun_disc", "sun_size", "sun_soft", "sun_strength"),
-    "Picture": ("preview_ev", "view", "white_balance"),
+    "Picture": ("preview_ev", "view", "white_balance", "vision"),
     "Map": (
         *("target", "projection", "size", "fov", "look", "cube_layout", "cube_space"),
         *("face_names", "equirect_rows", "rotate"),
@@ -41,7 +41,7 @@ OTHER = "Other"
 _SOLVES = frozenset(_GROUPS["World"])
 _CLOUDS = frozenset(_GROUPS["Clouds"])
 _FOLDS = frozenset((*_GROUPS["Sun's disc"], "below_horizon", *_GROUPS["Picture"]))
-_STORED = frozenset((*_GROUPS["Map"], *_GROUPS["File"]))
+_STORED = frozenset((*_GROUPS["Map"], *_GROUPS["File"], "vision"))
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ _LEFT_OUT = {
     *("manifests", "contact_sheet", "animate", "fps", "style", "quiet"),
 }
 _OF_PREVIEWS = {"preview_ev", "white_balance", "shot", "view"}
-_PATHS = {"output", "preview", "exposure_curve"}
+_PATHS = {"camera", "output", "preview", "exposure_curve"}
 
 HOW = frozenset({"skip_existing", "retry", "workers"})
 """Options that determine how frames are baked, not which."""

@@ -169,8 +169,8 @@ map_options = options_together(
         type=click.Choice(choices.METHODS),
         default="full",
         show_default=True,
-        help="Light transport: all orders of scattering, Hillaire's closure, or, as a check, "
-        "single scattering by direct quadrature.",
+        help="Light transport: all orders of scattering with polarised light, or as if light were "
+        "not polarised, Hillaire's closure, or, as a check, single scattering by quadrature.",
     ),
 )
 

@@ -14,6 +14,7 @@ from skybake.errors import InputError
 if TYPE_CHECKING:
     from skybake.ephemeris.moment import Moment
     from skybake.image.night import Night
+    from skybake.image.settings import MapSettings
 
 night_options = options_together(
     click.option(
@@ -46,6 +47,14 @@ night_options = options_together(
         show_default="1",
         help="Zodiacal light over what it is.",
     ),
+    click.option(
+        "--light-pollution",
+        metavar="off|LEVEL[,AZIMUTH]",
+        type=celestial.light_pollution,
+        show_default="off",
+        help="Glow of cities: the zenith as bright as 20mag per square arcsecond, with a natural "
+        "sky of 22, or by 1.5mcd/m2 of lamps alone; brighter toward a bearing such as 20mag,90deg.",
+    ),
 )
 
 lst_option = click.option(
@@ -64,7 +73,9 @@ def night_needs(options: Mapping[str, Any], *, is_timed: bool, time: str) -> Nee
     is_known = is_timed or sidereal is not None
     needs = f"needs {time}" + (" or --lst" if "sidereal_time" in options else "")
     is_off = options["night"] == "off"
-    lights = ("stars", "airglow", "zodiacal")
+    lights = [
+        name for name in ("stars", "airglow", "zodiacal", "light_pollution") if name in options
+    ]
     return {
         "night": (is_known, needs),
         **dict.fromkeys(
@@ -76,6 +87,21 @@ def night_needs(options: Mapping[str, Any], *, is_timed: bool, time: str) -> Nee
             f"cannot be combined with {time}" if is_timed else "needs --lat",
         ),
     }
+
+
+def is_scale_open(options: Mapping[str, Any]) -> bool:
+    """Whether no option says what 1.0 stands for, so that a night may have a scale of its own."""
+    return all(options.get(name) is None for name in ("units", "ev", "target"))
+
+
+def scaled_for_night(options: Mapping[str, Any], settings: MapSettings) -> MapSettings:
+    """Return the settings of a map at the scale of a night, if it is of one and none is given."""
+    if not is_scale_open(options):
+        return settings
+    from skybake.image.night_scale import night_scaled
+
+    (scaled,) = night_scaled([settings])
+    return scaled
 
 
 def night_from_options(options: Mapping[str, Any], moment: Moment | None = None) -> Night:
@@ -100,13 +126,16 @@ def night_from_options(options: Mapping[str, Any], moment: Moment | None = None)
     shown: dict[str, Any] = {
         name: options[name] for name in ("airglow", "zodiacal") if options[name] is not None
     }
-    wanted = options["stars"]
+    if options["light_pollution"] is not None:
+        shown["city"], shown["city_azimuth"] = options["light_pollution"]
+    wanted = options.get("stars")
     if wanted is not None:
         shown["faintest_star" if isinstance(wanted, float) else "stars"] = wanted
     try:
         night = Night(is_shown=options["night"] != "off", **shown)
     except InputError as error:
-        raise click.UsageError(f"--{error}") from error
+        where, colon, problem = str(error).partition(":")
+        raise click.UsageError(f"--{where.replace(' ', '-')}{colon}{problem}") from error
     if moment is not None:
         return night_at(night, moment)
     if options.get("sidereal_time") is None:

@@ -55,6 +55,21 @@ look_options = options_together(
     ),
 )
 
+
+def _vision_option(name: str) -> Decorator:
+    return click.option(
+        name,
+        "vision",
+        type=click.Choice(choices.VISIONS),
+        show_default=choices.VISIONS[0],
+        help="Whether the dark looks as to a camera, or as to the eye, which sees less colour in "
+        "it. Maps are never changed.",
+    )
+
+
+vision_option = _vision_option("--vision")
+preview_vision_option = _vision_option("--preview-vision")
+
 preview_options = options_together(
     _preview_option("[FILE.png]", "Also write a picture to look at; by default beside the map."),
     click.option(
@@ -63,6 +78,13 @@ preview_options = options_together(
         type=values.exposure,
         show_default="auto",
         help="Its exposure value at ISO 100; auto meters the sky as a camera does.",
+    ),
+    preview_vision_option,
+    click.option(
+        "--show",
+        type=click.Choice(choices.SHOWN),
+        show_default="light",
+        help="What it shows: the light, or its degree or angle of linear polarisation.",
     ),
     look_options,
 )
@@ -77,10 +99,11 @@ sequence_preview_options = options_together(
         help="Exposure value of all pictures at ISO 100; auto suits the frame with the highest "
         "sun, adapt finds one for each frame.",
     ),
+    preview_vision_option,
     look_options,
 )
 
-_NAMES = ("preview_ev", "white_balance", "shot", "view")
+_NAMES = ("preview_ev", "show", "white_balance", "shot", "view", "vision")
 
 
 def picture_from_options(options: Mapping[str, Any], ev: float | str | None) -> PictureSettings:
@@ -101,6 +124,8 @@ def picture_from_options(options: Mapping[str, Any], ev: float | str | None) -> 
         view=options["view"] or choices.VIEWS[0],
         white_balance=options["white_balance"],
         shot=None if view is None else shot(*view),
+        vision=options["vision"] or choices.VISIONS[0],
+        show=options.get("show") or choices.SHOWN[0],
     )
 
 

@@ -127,7 +127,8 @@ table_options = options_together(
         type=click.Choice(choices.TABLE_METHODS),
         default="full",
         show_default=True,
-        help="All orders of scattering, or Hillaire's closure, in all tables.",
+        help="All orders of scattering with polarised light, or as if light were not polarised, or "
+        "Hillaire's closure, in all tables.",
     ),
 )
 

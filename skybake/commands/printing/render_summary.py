@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from skybake.commands.printing.night import night_lines, night_result
 from skybake.units import degrees
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ def print_summary(baked: Baked, settings: MapSettings, seconds: float) -> None:
     click.echo(
         f"sun {baked.direct_illuminance:.5g} lx ({baked.direct_normal_illuminance:.5g} lx facing "
         f"it), sky {baked.sky_illuminance:.5g} lx on the horizontal; "
-        f"1.0 = {baked.white_luminance:.6g} cd/m2; {baked.pixel}; {seconds:.2f} s"
+        f"1.0 = {baked.white_luminance:.6g} cd/m2{_scale(settings)}; {baked.pixel}; {seconds:.2f} s"
     )
     eclipse = _eclipse(baked)
     if eclipse is not None:
@@ -41,12 +42,18 @@ def print_summary(baked: Baked, settings: MapSettings, seconds: float) -> None:
         click.echo(f"from below {by_map:.5g} lx, instead of {by_ground:.5g} lx by the ground")
     if baked.moonlight:
         click.echo(_moon_line(baked))
-    if baked.star_illuminance is not None:
-        click.echo(f"stars {baked.star_illuminance:.3g} lx on the horizontal")
+    for line in night_lines(baked.night):
+        click.echo(line)
     if baked.clamped:
         click.echo(f"{baked.clamped} negative values, out of gamut, were stored as 0")
     for line in target_lines(settings):
         click.echo(line)
+
+
+def _scale(settings: MapSettings) -> str:
+    from skybake.image.night_scale import NIGHT_EV, has_night_scale
+
+    return f" (EV {NIGHT_EV:g}, of a night)" if has_night_scale(settings) else ""
 
 
 def target_lines(settings: MapSettings) -> list[str]:
@@ -101,8 +108,8 @@ def result(
         "direct_normal_illuminance_lux": baked.direct_normal_illuminance,
         "sky_illuminance_lux": baked.sky_illuminance,
         "eclipse": _eclipse(baked),
-        "star_illuminance_lux": baked.star_illuminance,
         "moon": _moon(light),
+        **night_result(baked.night),
         "white_luminance_cd_m2": baked.white_luminance,
         "exposure_ev": light.exposure_ev,
         "projection": light.projection,

@@ -36,8 +36,8 @@ export class Gallery {
   }
 
   #item(preset) {
-    const picture = make("img", { alt: "", loading: "lazy", src: this.client.address(preset.picture), width: 240, height: 120 });
-    const lines = [make("span", {}, sentence(preset.summary) || preset.title), make("small", {}, `${preset.title} · ${preset.name}`)];
+    const picture = make("img", { alt: "", fetchpriority: "low", src: this.client.address(preset.picture), width: 240, height: 120 });
+    const lines = [make("span", {}, sentence(preset.summary) || preset.title), make("small", {}, preset.summary ? `${preset.title} · ${preset.name}` : preset.name)];
     const button = make("button", { type: "button", "data-preset": preset.name, onclick: () => this.#choose(preset) }, picture, ...lines);
     return { preset, button, element: make("li", {}, button) };
   }

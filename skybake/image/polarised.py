@@ -1,0 +1,122 @@
+"""Pixels of the sky's linear polarisation: Stokes components, and what a filter passes of them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from skybake.errors import InputError
+from skybake.image.scene import Scene
+from skybake.image.settings import MapSettings
+from skybake.jit.arguments import flatten
+from skybake.optics.matrix import unpolarised_constituents
+from skybake.optics.medium import Array
+from skybake.preset import Planet
+from skybake.sky.pixels import allocate_pixels, fill_directions
+from skybake.sky.table import FoldedTable
+
+REFERENCE = "toward the zenith; S2 counter-clockwise, seen along the view"
+"""What S1 and S2 are relative to, as files state it."""
+
+
+def check_polarisation(planet: Planet, settings: MapSettings, what: str) -> None:
+    """Refuse maps whose polarisation is not known.
+
+    Parameters
+    ----------
+    planet, settings : Planet, MapSettings
+        What is baked.
+    what : str
+        What asks for polarisation, for messages.
+
+    Raises
+    ------
+    InputError
+        With clouds, in an eclipse, by another method than full, or with an extended horizon.
+    """
+    if not all(layer.is_empty for layer in planet.clouds):
+        raise InputError(
+            f"{what}: needs a world without clouds, whose light has no polarisation here, "
+            f"got {len(planet.clouds)} layers"
+        )
+    if settings.lighting.moon is not None:
+        raise InputError(f"{what}: needs a sun without a moon in front, got one")
+    if settings.lighting.method != "full":
+        raise InputError(
+            f"{what}: needs the method full, which alone knows polarisation, "
+            f"got {settings.lighting.method}"
+        )
+    if settings.view.below_horizon == "extend":
+        raise InputError(f"{what}: needs ground or black below the horizon, got extend")
+
+
+def polarisation_warnings(planet: Planet) -> list[str]:
+    """Return what is to know of a world's polarisation, a line each."""
+    names = unpolarised_constituents(planet)
+    if not names:
+        return []
+    return [
+        f"what {', '.join(names)} scatter{'s' if len(names) == 1 else ''} counts as unpolarised, "
+        "since no scattering matrix is known"
+    ]
+
+
+def evaluate_stokes(
+    scene: Scene, zenith: Array, azimuth: Array, footprint: Array | float
+) -> np.ndarray:
+    """S1 and S2 of the sky and the ground, which discs and stars add nothing to.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is seen.
+    zenith, azimuth, footprint
+        As of `Scene.evaluate`.
+
+    Returns
+    -------
+    ndarray of float32, shape (row, column, 6)
+        S1 of three channels, and S2.
+    """
+    even, odd = (_filled(scene, each, zenith, azimuth, footprint) for each in scene.stokes)
+    odd *= np.sin(azimuth)[..., None].astype(np.float32)
+    return np.concatenate([even, odd], axis=2)
+
+
+def _filled(
+    scene: Scene, table: FoldedTable, zenith: Array, azimuth: Array, footprint: Array | float
+) -> np.ndarray:
+    rows, columns = np.broadcast_shapes(zenith.shape, azimuth.shape)
+    out = np.empty((rows, columns, 3), np.float32)
+    extent = np.atleast_2d(np.asarray(footprint, dtype=float))
+    pixels = flatten(table), flatten(zenith), flatten(azimuth), flatten(extent)
+
+    def work(first: int, last: int) -> None:
+        fill_directions(*pixels, first, last, allocate_pixels(table, columns), out[first:last])
+
+    scene.workers.run_rows(rows, work, chunk=128 // scene.workers.shares(8))
+    return out
+
+
+def through_filter(light: np.ndarray, stokes: np.ndarray, angle: float) -> np.ndarray:
+    """Return what an ideal linear polarising filter passes.
+
+    Parameters
+    ----------
+    light : ndarray of float32, shape (row, column, 3)
+        S0.
+    stokes : ndarray of float32, shape (row, column, 6)
+        S1 and S2.
+    angle : float
+        Of the filter's axis from the vertical, counter-clockwise as seen along the view. [rad]
+
+    Returns
+    -------
+    ndarray of float32, shape (row, column, 3)
+        Half of unpolarised light, and by Malus's law of light that is polarised.
+    """
+    even, odd = stokes[..., :3], stokes[..., 3:]
+    cosine, sine = np.float32(math.cos(2.0 * angle)), np.float32(math.sin(2.0 * angle))
+    passed: np.ndarray = np.float32(0.5) * (light + cosine * even + sine * odd)
+    return passed

@@ -1,0 +1,345 @@
+"""Maps at wavelengths, and in the channels of a camera, as other programs read them."""
+
+import json
+import math
+import warnings
+
+import numpy as np
+import OpenEXR
+import pytest
+
+import skybake
+from skybake.colour.camera import load_camera
+from skybake.colour.observer import LUMINOUS_EFFICACY, load_observer
+from skybake.formats.reader import read_attributes
+from skybake.formats.spectral_exr import read_stokes_channel, stokes_channel
+from skybake.image.sensor import DEFAULT_WAVELENGTHS, Sensor
+from skybake.optics.spectrum import hat_means
+from skybake.sky.disc import Disc
+from skybake.sky.sky import Sky
+from tests.cli.runs import invoke, listing
+
+WAVELENGTHS = np.array(DEFAULT_WAVELENGTHS)
+COLUMNS = "wavelength_nm,R,G,B\n"
+
+
+def quick(size=64, wavelengths=DEFAULT_WAVELENGTHS, **values):
+    """Settings of a map whose atmosphere need not be solved for."""
+    sensor = values.pop("sensor", Sensor(wavelengths=wavelengths))
+    return skybake.map_settings(size=size, sensor=sensor, **{"method": "hillaire", **values})
+
+
+def channels(path):
+    file = OpenEXR.File(str(path), separate_channels=True)
+    return {name: channel.pixels for name, channel in file.channels().items()}, file.header()
+
+
+def spectrum(path):
+    """Wavelengths, ascending, and radiances of shape (row, column, wavelength)."""
+    found, _ = channels(path)
+    names = {read_stokes_channel(name): name for name in found if read_stokes_channel(name)}
+    order = sorted(names)
+    return np.array([each[1] for each in order]), np.stack(
+        [found[names[each]].astype(float) for each in order], axis=-1
+    )
+
+
+def luminance(radiance, wavelengths=WAVELENGTHS):
+    """By the trapezoid rule over the observer at the wavelengths. [cd m⁻²]"""
+    nodes, xyz_bar = load_observer()
+    weighted = radiance * np.interp(wavelengths, nodes, xyz_bar[:, 1])
+    return LUMINOUS_EFFICACY * np.trapezoid(weighted, wavelengths, axis=-1)
+
+
+@pytest.fixture(scope="module")
+def baked(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("spectral")
+    skybake.bake("earth", folder / "sky.exr", quick(pixel="float"))
+    return folder / "sky.exr"
+
+
+def test_openexr_finds_a_channel_of_each_wavelength_and_what_the_layout_asks_for(baked):
+    found, header = channels(baked)
+    wanted = {"R", "G", "B", *(stokes_channel(0, each) for each in DEFAULT_WAVELENGTHS)}
+    assert set(found) == wanted
+    assert "S0.550,0nm" in found
+    assert header["spectralLayoutVersion"] == "1.0"
+    assert header["emissiveUnits"] == "W.m^-2.sr^-1"
+
+
+def test_colour_science_reads_the_layout(baked):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        from colour import read_spectral_image_Fichet2021
+
+        components, specification = read_spectral_image_Fichet2021(str(baked), additional_data=True)
+    assert specification.is_emissive
+    assert not specification.is_polarised
+    wavelengths, values = components["S0"]
+    assert np.sort(wavelengths).tolist() == WAVELENGTHS.tolist()
+    assert values.shape == (32, 64, 31)
+
+
+def test_the_spectrum_has_the_luminance_of_the_map(baked, tmp_path):
+    """Within 0.2 %, both of the colours in its file and of those in a map without a spectrum."""
+    _, radiance = spectrum(baked)
+    skybake.bake("earth", tmp_path / "plain.exr", quick(pixel="float", sensor=Sensor()))
+    weights = np.array([0.2126390, 0.7151687, 0.0721923]) * 1.2 * 2**15
+    height = np.cos(math.pi * ((np.arange(32) + 0.5) / 32 - 0.5))[:, None]
+    for path, most in ((baked, 2e-3), (tmp_path / "plain.exr", 6e-3)):
+        found, _ = channels(path)
+        seen = np.stack([found[name] for name in "RGB"], axis=-1) @ weights
+        ratio = luminance(radiance) / seen
+        assert np.abs(ratio - 1.0).max() < most
+        assert (ratio * height * seen).sum() == pytest.approx((height * seen).sum(), rel=2e-3)
+
+
+def test_pixels_are_the_radiance_of_the_sky(baked):
+    wavelengths, radiance = spectrum(baked)
+    sky = Sky("earth", math.radians(30.0), wavelengths=wavelengths, method="hillaire")
+    for row, column in ((4, 10), (10, 40), (14, 5)):
+        elevation = math.pi * (0.5 - (row + 0.5) / 32)
+        bearing = 2.0 * math.pi * (column + 0.5) / 64
+        # The middle of the map faces south, its left half is the east.
+        direction = [
+            math.cos(elevation) * math.sin(bearing),
+            math.sin(elevation),
+            -math.cos(elevation) * math.cos(bearing),
+        ]
+        per_irradiance = sky.radiance(np.array(direction)) / sky.irradiance
+        light = per_irradiance * hat_means(sky.star.irradiance, wavelengths)
+        assert radiance[row, column] == pytest.approx(light, rel=4e-3)
+
+
+def test_the_disc_brings_the_irradiance_of_the_sun_at_each_wavelength(tmp_path):
+    wavelengths = (420.0, 550.0, 680.0)
+    skybake.bake("earth", tmp_path / "sun.exr", quick(128, wavelengths, sun_disc="only"))
+    _, radiance = spectrum(tmp_path / "sun.exr")
+    step = math.pi / 64
+    height = np.cos(step * (np.arange(64) + 0.5) - math.pi / 2.0)[:, None, None]
+    sky = Sky("earth", math.radians(30.0), wavelengths=np.array(wavelengths), method="hillaire")
+    normal, _ = Disc(sky.skylight, sky.source).irradiance_per_irradiance()
+    light = normal * hat_means(sky.star.irradiance, np.array(wavelengths))
+    assert (radiance * height * step**2).sum(axis=(0, 1)) == pytest.approx(light, rel=3e-3)
+
+
+@pytest.mark.parametrize(
+    ("values", "files"),
+    [({"projection": "cubemap", "size": 8}, 6), ({"projection": "fisheye", "size": 16}, 1)],
+)
+def test_every_projection_has_a_spectrum(tmp_path, values, files):
+    skybake.bake("earth", tmp_path / "a.exr", quick(wavelengths=(450.0, 600.0), **values))
+    assert len(listing(tmp_path)) == files
+    for name in listing(tmp_path):
+        wavelengths, radiance = spectrum(tmp_path / name)
+        assert wavelengths.tolist() == [450.0, 600.0]
+        assert radiance.max() > 0.01
+
+
+def test_more_wavelengths_than_are_solved_for_together_are_all_there(tmp_path):
+    many = tuple(np.linspace(380.0, 720.0, 50).tolist())
+    skybake.bake("earth", tmp_path / "a.exr", quick(16, many))
+    wavelengths, radiance = spectrum(tmp_path / "a.exr")
+    assert wavelengths == pytest.approx(many, abs=1e-4)
+    assert (radiance[4] > 0.0).all()
+
+
+def test_the_mean_over_a_hat_keeps_the_integral_of_what_is_linear_between():
+    star = skybake.load_preset("earth").star.irradiance
+    nodes = np.arange(390.0, 710.1, 0.05)
+    light = np.interp(nodes, star.wavelength, star.values)
+    even = hat_means(star, WAVELENGTHS)
+    hats = [np.clip(1.0 - np.abs(nodes - each) / 10.0, 0.0, None) for each in WAVELENGTHS]
+    wanted = [np.trapezoid(light * hat, nodes) / 10.0 for hat in hats]
+    assert even == pytest.approx(wanted, rel=1e-4)
+
+
+def test_a_recipe_and_a_name_tell_the_wavelengths(baked):
+    recipe = json.loads(read_attributes(baked)["skybake:recipe"])["map"]
+    assert recipe["wavelengths_nm"] == "400:700:10"
+
+
+@pytest.mark.parametrize(
+    ("preset", "values", "problem"),
+    [
+        ("earth", {"wavelengths": (300.0, 400.0)}, r"wavelength must be within .* got 300 nm"),
+        ("earth", {"wavelengths": (500.0, 500.0)}, "spectral: wavelengths must ascend"),
+        ("earth", {"wavelengths": ()}, "spectral: must be 1 to 512 wavelengths, got 0"),
+        ("earth-fair", {}, "spectral: needs a world without clouds"),
+        ("earth-hillaire2020", {"wavelengths": (500.0,)}, "needs a preset of rendering spectral"),
+        ("earth", {"mips": True}, "a spectral map must be without mips"),
+        ("earth", {"layers": True}, "a spectral map must be without layers"),
+    ],
+)
+def test_what_has_no_spectrum_is_refused_in_a_line_and_leaves_no_file(
+    tmp_path, preset, values, problem
+):
+    with pytest.raises(skybake.SkybakeError, match=problem) as raised:
+        skybake.bake(preset, tmp_path / "a.exr", quick(**values))
+    assert "\n" not in str(raised.value)
+    assert listing(tmp_path) == []
+
+
+def test_a_spectral_map_is_found_fine_and_converted_without_its_spectrum(baked, tmp_path):
+    assert invoke("check", baked).stdout == f"{baked}: fine\n"
+    result = invoke("convert", baked, tmp_path / "small.exr", "--size", "32")
+    assert "the spectrum is left out" in result.stderr
+    found, header = channels(tmp_path / "small.exr")
+    assert set(found) == {"R", "G", "B"}
+    assert "spectralLayoutVersion" not in header
+    assert "skybake:spectralUnits" not in header
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [
+        ("380:720:10nm", [380.0 + 10.0 * i for i in range(35)]),
+        ("400:420", [400.0, 410.0, 420.0]),
+        ("450nm,550,650", [450.0, 550.0, 650.0]),
+        ("400:400.3:0.1", [400.0, 400.1, 400.2, 400.3]),
+    ],
+)
+def test_wavelengths_are_a_range_or_a_list(text, wanted):
+    from skybake.commands.options.sensor import wavelengths
+
+    assert list(wavelengths(text)) == wanted
+
+
+@pytest.mark.parametrize(
+    "text", ["", "blue", "700:400", "400:700:0", "1:2:3:4", "400,500:600", "nan"]
+)
+def test_other_wavelengths_are_wrong_usage(tmp_path, monkeypatch, text):
+    monkeypatch.chdir(tmp_path)
+    result = invoke("render", "--size", "64", "--spectral", text)
+    assert result.exit_code == 2
+    assert result.stderr.count("\n") == 1
+    assert listing(tmp_path) == []
+
+
+def test_frames_of_a_sequence_have_spectra_too(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    options = ("--frames", "1-2", "--sun", "20..30", "--size", "32", "--method", "hillaire")
+    result = invoke("sequence", *options, "--spectral", "450,600", "-o", "a.####.exr", "-q")
+    assert result.exit_code == 0, result.output
+    for number in (1, 2):
+        wavelengths, radiance = spectrum(tmp_path / f"a.{number:04}.exr")
+        assert wavelengths.tolist() == [450.0, 600.0]
+        assert radiance.max() > 0.01
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ("--moon-elevation", "20deg", "--sun", "10deg"),
+        ("--lst", "3h", "--lat", "30", "--sun", "-30"),
+    ],
+)
+def test_lights_that_an_eye_alone_knows_are_refused(tmp_path, monkeypatch, options):
+    monkeypatch.chdir(tmp_path)
+    result = invoke(
+        "render", "--size", "32", "--spectral", "500,600", "--method", "hillaire", *options, "-q"
+    )
+    assert result.exit_code == 1
+    assert "needs a map without lights of the night" in result.stderr
+    assert listing(tmp_path) == []
+
+
+@pytest.fixture
+def observer(tmp_path):
+    """A camera whose channels are those of the observer."""
+    nodes, xyz_bar = load_observer()
+    lines = [f"{w:g},{x},{y},{z}" for w, (x, y, z) in zip(nodes, xyz_bar, strict=True)]
+    path = tmp_path / "observer.csv"
+    path.write_text(COLUMNS + "\n".join(lines))
+    return path
+
+
+def test_a_camera_with_the_eyes_response_sees_the_eyes_luminance(observer, tmp_path):
+    camera = Sensor(response=load_camera(observer, "none"))
+    skybake.bake("earth", tmp_path / "camera.exr", quick(sensor=camera, pixel="float"))
+    eye = quick(sensor=Sensor(), pixel="float", colorspace="xyz")
+    skybake.bake("earth", tmp_path / "eye.exr", eye)
+    by_camera, header = channels(tmp_path / "camera.exr")
+    by_eye, _ = channels(tmp_path / "eye.exr")
+    for name in "RGB":
+        assert by_camera[name] == pytest.approx(by_eye[name], rel=1e-3)
+    assert header["skybake:camera"].startswith("observer.csv sha256:")
+    assert header["colorInteropID"] == "unknown"
+    assert "chromaticities" not in header
+
+
+def test_daylight_is_white_to_a_camera_unless_it_keeps_its_ratios(observer):
+    import colour
+
+    d65 = colour.SDS_ILLUMINANTS["D65"]
+    nodes = np.arange(360.0, 831.0, 5.0)
+    light = np.array([d65[each] for each in nodes])
+    wavelengths = np.linspace(380.0, 720.0, 16)
+    whole = load_camera(observer).weights(wavelengths, nodes, light).sum(axis=0)
+    assert whole == pytest.approx(np.full(3, whole[1]), rel=1e-4)
+    own = load_camera(observer, "none").weights(wavelengths, nodes, light).sum(axis=0)
+    # CIE 015: XYZ of D65.
+    assert own / own[1] == pytest.approx([0.95047, 1.0, 1.08883], abs=1e-3)
+    assert own[1] == pytest.approx(whole[1], rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        ("", "columns must be wavelength_nm,R,G,B"),
+        ("wavelength_nm,R,G\n400,1,1\n", "columns must be"),
+        (COLUMNS + "400,1,1,1\n", "must have at least 2 wavelengths, got 1"),
+        (COLUMNS + "400,1,1,1\n400,1,1,1\n700,1,1,1\n", "wavelengths must ascend"),
+        (COLUMNS + "450,1,1,1\n700,1,1,1\n", "must cover 400 to 700 nm, got 450 to 700 nm"),
+        (COLUMNS + "400,1,1,nan\n700,1,1,1\n", "a row must be four finite numbers"),
+        (COLUMNS + "400,1,1,-1\n700,1,1,1\n", "B must be at least 0"),
+        (COLUMNS + "400,0,1,1\n700,0,1,1\n", "R must be at least 0, and greater"),
+        (COLUMNS + "-5,1,1,1\n700,1,1,1\n", "a wavelength must be greater than 0 nm"),
+    ],
+)
+def test_a_faulty_response_is_refused_in_a_line(tmp_path, monkeypatch, text, problem):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "camera.csv").write_text(text)
+    result = invoke("render", "--size", "64", "--camera", "camera.csv", "-q")
+    assert result.exit_code == 1
+    assert problem in result.stderr
+    assert result.stderr.count("\n") == 1
+    assert listing(tmp_path) == ["camera.csv"]
+
+
+def test_a_camera_that_sees_what_the_map_has_not_is_refused(tmp_path):
+    (tmp_path / "infrared.csv").write_text(COLUMNS + "400,1,1,1\n830,1,1,1\n")
+    sensor = Sensor(response=load_camera(tmp_path / "infrared.csv"))
+    with pytest.raises(skybake.InputError, match="response must lie within the map's wavelengths"):
+        skybake.bake("earth", tmp_path / "a.exr", quick(sensor=sensor))
+
+
+def test_a_cameras_map_is_fine_but_not_converted(observer, tmp_path):
+    camera = Sensor(response=load_camera(observer))
+    skybake.bake("earth", tmp_path / "camera.exr", quick(sensor=camera))
+    assert invoke("check", tmp_path / "camera.exr").exit_code == 0
+    result = invoke("convert", tmp_path / "camera.exr", tmp_path / "b.exr")
+    assert result.exit_code == 1
+    assert "colours must be those of an eye, got a camera's" in result.stderr
+    assert not (tmp_path / "b.exr").exists()
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ("--spectral", "-o", "a.hdr"),
+        ("--spectral", "--mips"),
+        ("--spectral", "--sun-disc", "separate"),
+        ("--camera-white", "none"),
+        ("--camera", "observer.csv", "--colorspace", "acescg"),
+        ("--camera", "observer.csv", "--lights", "a.usda"),
+    ],
+)
+def test_options_that_contradict_a_spectrum_or_a_camera_are_wrong_usage(
+    observer, tmp_path, monkeypatch, options
+):
+    monkeypatch.chdir(tmp_path)
+    result = invoke("render", "--size", "64", *options)
+    assert result.exit_code == 2, result.output
+    assert result.stderr.count("\n") == 1
+    assert listing(tmp_path) == ["observer.csv"]
