@@ -182,7 +182,7 @@ def test_a_time_and_a_place_give_the_sun(tmp_path):
         (("--camera-up", "z"), 2, "--camera-up: needs --camera"),
         (("--camera", "none.json"), 1, "none.json"),
         (("--camera", "a.json", "--look", "1,2"), 2, "--look: cannot be combined with --camera"),
-        (("--method", "march"), 2, "'march' is not one of 'full', 'hillaire'"),
+        (("--method", "march"), 2, "'march' is not one of 'full', 'scalar', 'hillaire'"),
     ],
 )
 def test_what_cannot_be_made_is_one_line_and_leaves_nothing(tmp_path, arguments, status, line):
