@@ -106,8 +106,15 @@ class PrivateFolder:
         finally:
             os.close(descriptor)
 
-    def write(self, name: str, content: bytes) -> None:
+    def write(self, name: str, *parts: bytes | memoryview) -> None:
         """Write a file that only this user can read, completely or not at all.
+
+        Parameters
+        ----------
+        name : str
+            Of the file.
+        *parts : bytes or memoryview
+            What it holds, one after the other.
 
         Raises
         ------
@@ -117,7 +124,7 @@ class PrivateFolder:
         with self._temporary() as (temporary, descriptor):
             # Only where a file can be renamed while it is open does it keep its lock until then.
             with os.fdopen(descriptor, "wb", closefd=not _RELATIVE) as file:
-                file.write(content)
+                file.writelines(parts)
             source, target = self._name(temporary), self._name(name)
             os.replace(source, target, src_dir_fd=self._above, dst_dir_fd=self._above)
 
