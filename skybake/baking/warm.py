@@ -30,6 +30,7 @@ from skybake.scattering.spin_harmonics import fill_each_spin, harmonic_count
 from skybake.scattering.stokes import polarisation_of
 from skybake.scattering.stokes_solver import ORDER, trace_stokes
 from skybake.scattering.tables import Atmosphere
+from skybake.sky.pixels import blacken_negative
 from skybake.sky.sky import METHODS, WAVELENGTHS, Sky
 
 SMALL = MapSettings(View(projection=Equirect(16)))
@@ -52,6 +53,8 @@ def compile_all() -> None:
     build_atmosphere(medium, "hillaire")
     _compile_polarisation(build_atmosphere(medium, "full"))
     build_atmosphere(build_medium(load_preset("mars"), WAVELENGTHS), "full")
+    # Few maps have pixels of negative luminance.
+    blacken_negative(np.zeros(3, np.float32), np.zeros((0, 1, 3), np.float32))
     here = np.zeros(1)
     radiance(medium, 0.0, SMALL.lighting.sun_elevation, here, here, samples=2)
     stokes(medium, 0.0, SMALL.lighting.sun_elevation, here, here, samples=2)

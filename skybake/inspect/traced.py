@@ -7,6 +7,7 @@ from skybake.optics.medium import Array
 from skybake.optics.phase import build_phase
 from skybake.preset import Planet
 from skybake.reference import cloudy, stokes
+from skybake.reference.estimate import radiance
 from skybake.sky.sky import Sky
 
 
@@ -37,6 +38,9 @@ def traced_radiance(
     """
     if not planet.clouds:
         place = sky.medium, sky.altitude, sky.sun_elevation
+        if not len(sky.medium.matrix):
+            # Nothing scatters light, so that none is polarised.
+            return radiance(*place, zenith, azimuth, samples=samples)
         mean, error = stokes.stokes(*place, zenith, azimuth, samples=samples)
         return mean[:, 0], error[:, 0]
     return cloudy.radiance(

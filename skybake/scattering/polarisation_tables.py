@@ -36,8 +36,10 @@ def load_polarisation(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> Po
     Raises
     ------
     InputError
-        If the field was solved for as if light were not polarised.
+        If the field was solved for as if light were not polarised, or there is no air.
     """
+    if not atmosphere.medium.extinction.any():
+        raise InputError("polarisation: world must have something that scatters light, got none")
     if not len(atmosphere.scaled.matrix_moments):
         raise InputError("polarisation: method must be full, the only one that has it")
     medium = atmosphere_key(atmosphere.medium, "polarisation")

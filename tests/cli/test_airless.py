@@ -68,6 +68,14 @@ def test_a_probe_sees_ground_below_and_nothing_above():
         assert down == pytest.approx(0.3 * 0.5 / math.pi, rel=1e-6)
 
 
+@pytest.mark.parametrize("method", ["full", "reference"])
+def test_where_nothing_scatters_light_its_polarisation_is_refused(method):
+    result = invoke("probe", *NO_AIR, "--stokes", "--method", method, "--samples", "2")
+    assert result.exit_code == 1
+    told = "polarisation: world must have something that scatters light, got none"
+    assert result.output == f"skybake: {told}\n"
+
+
 def test_a_check_prints_figures_of_nothing():
     text = done("presets", "check", "earth", *NO_AIR)
     assert "visibility: without limit at the ground" in text
