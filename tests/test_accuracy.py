@@ -199,7 +199,7 @@ def test_probe_of_the_preset_gives_the_table(tmp_path):
     lines = [",".join(names), *(f"{zenith:g},{azimuth:g}" for zenith, azimuth in views)]
     source.write_text("\n".join(lines) + "\n")
     command = "--preset earth-hillaire2020 --sun 10deg --altitude 10km --directions - "
-    command += "--wavelengths 680,550,440 --per-irradiance"
+    command += "--wavelengths 680,550,440 --per-irradiance --method scalar"
     with source.open() as stdin:
         status, output, errors = run("probe", *command.split(), stdin=stdin)
     assert (status, errors) == (0, "")

@@ -168,6 +168,8 @@ def probe(
         method=fast,
     )
     sky.check_clouds()
+    if with_stokes:
+        check_polarisation(planet, sky)
     columns: dict[str, Array] = {}
     seen = clouds or Clouds()
     values, errors = _radiance(planet, sky, directions, method, samples, seen)
@@ -179,7 +181,6 @@ def probe(
     if not per_irradiance:
         columns |= _colour(planet, sky, directions, method, samples, seen, values)
     if with_stokes:
-        check_polarisation(planet, sky)
         paths = samples if method == REFERENCE else None
         columns |= stokes_columns(sky, directions.zenith, directions.azimuth, scale, paths)
     if illuminance:

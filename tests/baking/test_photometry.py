@@ -72,6 +72,7 @@ def hazy_scene(elevation):
     return made
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("elevation", SEIDELMANN)
 def test_global_illuminance_of_a_hazy_day_is_the_almanacs_within_8_percent(elevation):
     """One optical depth for all suns; a path tracer has 25 % more at 0.1."""

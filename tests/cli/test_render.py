@@ -55,8 +55,8 @@ def test_json_says_what_was_baked(folder):
     assert told["sun_irradiance"] == pytest.approx(expected, rel=1e-9)
     assert (told["sun_disc"], told["lights"]) == ("include", [])
     assert (told["target"], told["target_sun_direction"]) == (None, None)
-    assert (told["star_illuminance_lux"], told["eclipse"]) == (None, None)
-    assert len(told) == 32
+    assert [told[key] for key in ("star_illuminance_lux", "eclipse", "night", "moon")] == [None] * 4
+    assert len(told) == 34
 
 
 def test_the_suggested_exposure_is_that_of_a_preview():

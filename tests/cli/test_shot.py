@@ -74,7 +74,10 @@ def test_the_setting_sun_stands_on_the_limb(folder):
 @pytest.mark.parametrize(
     ("arguments", "problem"),
     [
-        (("--look", "up"), "--look': must be sun, horizon, limb, planet or AZIMUTH,ELEVATION"),
+        (
+            ("--look", "up"),
+            "--look': must be sun, moon, horizon, limb, planet or AZIMUTH,ELEVATION",
+        ),
         (("--look", "sun,90"), "sun takes no azimuth, got 'sun,90'"),
         (("--look", "180,95"), "must be from -90deg to 90deg, got 95"),
         (("--look", "limb"), "--look: limb needs a camera above the atmosphere"),

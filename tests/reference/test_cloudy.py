@@ -97,7 +97,8 @@ def check_deck(optical_depth, ground, sun, every, samples, worst):
 
 
 @pytest.mark.parametrize(
-    ("optical_depth", "ground", "sun"), [(1.0, 0.3, 60.0), (4.0, 0.0, 20.0), (16.0, 0.3, 60.0)]
+    ("optical_depth", "ground", "sun"),
+    [(1.0, 0.3, 60.0), (4.0, 0.0, 20.0), pytest.param(16.0, 0.3, 60.0, marks=pytest.mark.slow)],
 )
 def test_a_deck_agrees_with_discrete_ordinates(optical_depth, ground, sun):
     check_deck(optical_depth, ground, sun, every=2, samples=9600, worst=0.1)

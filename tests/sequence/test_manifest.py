@@ -11,6 +11,7 @@ import skybake
 from skybake.errors import OutputError
 from skybake.sequence.frames import parse_frames
 from skybake.sequence.manifest import FrameRecord, write_csv, write_manifest
+from skybake.sidecar.dome_and_sun import DistantLight
 from tests.sequence.records import HEADER, record
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "sequences.md"
@@ -41,7 +42,14 @@ def test_a_manifest_holds_header_and_records_by_frame(tmp_path):
 
 
 def test_every_key_of_a_manifest_is_documented_and_every_documented_one_exists(tmp_path):
-    write_manifest(tmp_path / "a.json", HEADER, [record(1)])
+    moon = DistantLight(
+        elevation_deg=30.0,
+        azimuth_deg=120.0,
+        angular_diameter_deg=0.52,
+        colour=(1.0, 1.0, 1.0),
+        illuminance_lux=0.2,
+    )
+    write_manifest(tmp_path / "a.json", HEADER, [record(1, moon=moon)])
     read = json.loads((tmp_path / "a.json").read_text("utf-8"))
     section = DOCUMENT.read_text("utf-8").partition("### Manifest\n")[2].partition("\n### ")[0]
     rows = re.findall(r"^\| (`.*?) \|", section, re.MULTILINE)
