@@ -17,6 +17,9 @@ from skybake.preset.cloud_kinds import DEFAULTS
 from tests.cloud_fields.layers import KINDS, field, layer
 from tests.cloud_fields.sampling import clearance, column_depths, extinction, random_points
 
+SLOW_KINDS = {"cumulus": pytest.mark.slow}
+"""Whose tiles take longest to draw."""
+
 
 def is_covered(depths, optical_depth):
     return depths > LEAST_DEPTH * min(optical_depth, 1.0)
@@ -42,7 +45,9 @@ def test_a_deck_much_deeper_than_its_cells_has_its_little_cover_too():
     assert is_covered(column_depths(clouds, 151), 200.0).mean() == pytest.approx(0.02, abs=0.01)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(
+    "kind", [pytest.param(kind, marks=SLOW_KINDS.get(kind, ())) for kind in KINDS]
+)
 def test_full_cover_leaves_no_gap(kind):
     depths = column_depths(field(kind, cover=1.0), 113)
     assert is_covered(depths, DEFAULTS[kind].optical_depth).mean() > 0.995
@@ -82,7 +87,13 @@ def test_there_is_no_seam_where_the_tile_ends(kind):
     assert change(0.0) < 1.5 * max(inside)
 
 
-@pytest.mark.parametrize("shape", [cumulus, functools.partial(cirrus, wind_from=0.0)])
+@pytest.mark.parametrize(
+    "shape",
+    [
+        pytest.param(cumulus, marks=pytest.mark.slow),
+        functools.partial(cirrus, wind_from=0.0),
+    ],
+)
 def test_the_same_seed_makes_the_same_bytes_and_another_another_field(shape):
     first, again, other = (shape(0.3, 1.0, 0.4, 0.5, 20.0, seed) for seed in (3, 3, 4))
     for one, same in zip(first, again, strict=True):

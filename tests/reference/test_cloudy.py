@@ -60,7 +60,7 @@ def check_clear(altitude, sun, samples):
     check_agrees(mean, stderr, expected[:, 0], noise[:, 0], 0.03)
 
 
-@pytest.mark.parametrize(("altitude", "sun"), [(0.001, 60.0), (0.001, -4.0), (11.0, 5.0)])
+@pytest.mark.parametrize(("altitude", "sun"), [(0.001, -4.0), (11.0, 5.0)])
 def test_clouds_of_no_extinction_leave_the_clear_sky(altitude, sun):
     check_clear(altitude, sun, 3200)
 
