@@ -42,8 +42,10 @@ def stokes(
     InputError
         If an argument is out of range, or the medium has no matrices.
     """
-    if not len(medium.matrix):
+    if not medium.extinction.any():
         raise InputError("polarisation: world must have something that scatters light, got none")
+    if not len(medium.matrix):
+        raise InputError("polarisation: medium must have scattering matrices, got none")
     sun, views = directions_of(altitude, sun_elevation, view_zenith, relative_azimuth)
     # Seen from above, x to y is counter-clockwise.
     views = [(x, -y, z) for x, y, z in views]
