@@ -169,7 +169,8 @@ def test_an_overcast_brings_the_ground_the_light_of_a_monte_carlo_program(tmp_pa
     assert np.all(np.abs(off) < most), off
 
 
-@pytest.mark.parametrize("sun", [pytest.param(60.0, marks=pytest.mark.slow), 3.0])
+@pytest.mark.slow
+@pytest.mark.parametrize("sun", [60.0, 3.0])
 def test_under_a_layer_of_hardly_any_cloud_is_the_light_of_a_clear_sky(tmp_path, sun):
     clouds = cloudscape(overcast(tmp_path, 1e-3), sun, 0.001, "draft")
     layer = clouds.solved[-1]

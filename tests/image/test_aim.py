@@ -34,7 +34,16 @@ def pixels(picture, altitude, **settings):
     return Raster(Scene(load_preset("earth"), made), canvas).rows(0, picture.height)
 
 
-@pytest.mark.parametrize("sun", [pytest.param(60.0, marks=pytest.mark.slow), 30.0, 10.0, 2.0, 0.0])
+@pytest.mark.parametrize(
+    "sun",
+    [
+        pytest.param(60.0, marks=pytest.mark.slow),
+        pytest.param(30.0, marks=pytest.mark.slow),
+        10.0,
+        2.0,
+        0.0,
+    ],
+)
 def test_pixels_from_orbit_are_those_of_the_path_tracer(sun):
     """Within 1 % beyond three standard errors, over the disc and at the limb, except in its night.
 

@@ -79,6 +79,7 @@ def test_from_orbit_airglow_is_brighter_above_the_limb_than_beside_it():
     assert luminance.max() > 20.0 * luminance[np.argmin(abs(zenith - 90.0))]
 
 
+@pytest.mark.slow
 def test_zodiacal_light_is_dimmer_from_mars():
     frame = CelestialFrame("mars", 1.0, 0.0)
 
