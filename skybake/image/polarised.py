@@ -9,12 +9,9 @@ import numpy as np
 from skybake.errors import InputError
 from skybake.image.scene import Scene
 from skybake.image.settings import MapSettings
-from skybake.jit.arguments import flatten
 from skybake.optics.matrix import unpolarised_constituents
 from skybake.optics.medium import Array
 from skybake.preset import Planet
-from skybake.sky.pixels import allocate_pixels, fill_directions
-from skybake.sky.table import FoldedTable
 
 REFERENCE = "toward the zenith; S2 counter-clockwise, seen along the view"
 """What S1 and S2 are relative to, as files state it."""
@@ -79,24 +76,9 @@ def evaluate_stokes(
     ndarray of float32, shape (row, column, 6)
         S1 of three channels, and S2.
     """
-    even, odd = (_filled(scene, each, zenith, azimuth, footprint) for each in scene.stokes)
+    even, odd = (scene.evaluate_table(each, zenith, azimuth, footprint) for each in scene.stokes)
     odd *= np.sin(azimuth)[..., None].astype(np.float32)
     return np.concatenate([even, odd], axis=2)
-
-
-def _filled(
-    scene: Scene, table: FoldedTable, zenith: Array, azimuth: Array, footprint: Array | float
-) -> np.ndarray:
-    rows, columns = np.broadcast_shapes(zenith.shape, azimuth.shape)
-    out = np.empty((rows, columns, 3), np.float32)
-    extent = np.atleast_2d(np.asarray(footprint, dtype=float))
-    pixels = flatten(table), flatten(zenith), flatten(azimuth), flatten(extent)
-
-    def work(first: int, last: int) -> None:
-        fill_directions(*pixels, first, last, allocate_pixels(table, columns), out[first:last])
-
-    scene.workers.run_rows(rows, work, chunk=128 // scene.workers.shares(8))
-    return out
 
 
 def through_filter(light: np.ndarray, stokes: np.ndarray, angle: float) -> np.ndarray:

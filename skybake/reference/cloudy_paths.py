@@ -19,7 +19,7 @@ from skybake.reference.directions import (
     uniform,
 )
 from skybake.reference.guide import Guide, look_up
-from skybake.reference.paths import SURVIVAL, turn, turn_density
+from skybake.reference.paths import SURVIVAL
 from skybake.reference.rays import (
     Cuts,
     altitude_on_ray,
@@ -46,6 +46,7 @@ from skybake.reference.tracking import (
     moved,
     vertical_at,
 )
+from skybake.reference.turns import turn, turn_density
 
 DUSK = 0.1
 """Cosine of the sun's zenith angle below which paths that leave the clouds are guided."""
