@@ -1,11 +1,10 @@
 """Pictures follow the knobs, each page for itself."""
 
 import asyncio
-import json
 import math
 import shlex
 import time
-from contextlib import asynccontextmanager, suppress
+from contextlib import suppress
 from pathlib import Path
 
 import aiohttp
@@ -14,82 +13,14 @@ import pytest
 
 import skybake
 from tests.cli.runs import invoke
-from tests.studio.servers import read_frame, serving
-
-SMALL = {"kind": "equirect", "size": [64, 32]}
-LARGE = {"kind": "equirect", "size": [512, 256]}
+from tests.studio.pages import LARGE, page_of, talk, view_of
+from tests.studio.servers import serving
 
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory):
     with serving(tmp_path_factory.mktemp("live")) as running:
         yield running
-
-
-class Page:
-    """The socket of one page."""
-
-    def __init__(self, socket):
-        self.socket = socket
-        self.number = 0
-
-    async def ask(self, options=(), changes=(), *, view=SMALL, tag="A"):
-        """Ask for a view; returns its number."""
-        self.number += 1
-        state = {"options": dict(options), "set": dict(changes)}
-        await self.socket.send_json({"id": self.number, "tag": tag, "state": state, "view": view})
-        return self.number
-
-    async def next(self):
-        """Return the next message: JSON, or header and pixels of a picture."""
-        message = await asyncio.wait_for(self.socket.receive(), 240)
-        if message.type is aiohttp.WSMsgType.TEXT:
-            return json.loads(message.data), None
-        assert message.type is aiohttp.WSMsgType.BINARY, message
-        return read_frame(message.data)
-
-    async def end(self, number):
-        """Return all messages up to the last one about a request."""
-        seen = []
-        while True:
-            answer, pixels = await self.next()
-            if answer.get("id") == number:
-                seen.append((answer, pixels))
-                if answer.get("final") or "error" in answer or "cancelled" in answer:
-                    return seen
-
-
-@asynccontextmanager
-async def page_of(server):
-    async with (
-        aiohttp.ClientSession() as session,
-        session.ws_connect(
-            f"http://127.0.0.1:{server.port}/api/live?token={server.token}", max_msg_size=0
-        ) as socket,
-    ):
-        yield Page(socket)
-
-
-def talk(server, conversation, pages=1):
-    """Run a conversation with the sockets of some pages, and return what it returns."""
-
-    async def run():
-        if pages == 1:
-            async with page_of(server) as page:
-                return await conversation(page)
-        async with page_of(server) as first, page_of(server) as second:
-            return await conversation(first, second)
-
-    return asyncio.run(run())
-
-
-def view_of(server, options=(), changes=(), **keywords):
-    """Return header and pixels of the full picture."""
-
-    async def conversation(page):
-        return (await page.end(await page.ask(options, changes, **keywords)))[-1]
-
-    return talk(server, conversation)
 
 
 def test_a_coarse_picture_comes_before_the_full_one(server):
