@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import replace
@@ -25,6 +26,9 @@ KEPT_SUNS = 4
 SOLVING, TRACING, CLOUDS = "solving atmosphere", "tracing light", "solving clouds"
 ECLIPSE = "following the eclipse"
 """Stages that take long."""
+
+LOWEST_SUN = math.radians(-6.0)
+"""Below which another method shows another sky. [rad]"""
 
 FAR = 3.0
 """Altitude from which all of a planet is seen, in its radii."""
@@ -100,6 +104,20 @@ class Scenes:
         workers = ALL_CPUS.with_cancel(cancel)
         return Scene(request.planet, scene.settings, workers, self._coarse_stages)
 
+    def nearby(self, request: Request, scene: Scene, cancel: Event) -> Scene | None:
+        """Return a scene that looks alike and whose atmosphere is solved for in half a second.
+
+        None where the sun is too low for Hillaire's closure to look alike, where it was asked for,
+        and where clouds or the Moon take longest.
+        """
+        lighting = scene.settings.lighting
+        is_alike = lighting.method in {"full", "scalar"} and lighting.sun_elevation > LOWEST_SUN
+        if not is_alike or scene.planet.clouds or lighting.moon is not None:
+            return None
+        settings = replace(scene.settings, lighting=replace(lighting, method="hillaire"))
+        workers = ALL_CPUS.with_cancel(cancel)
+        return Scene(request.planet, settings, workers, self._coarse_stages)
+
     def keep(self, request: Request, scene: Scene, pixels: Pixels) -> None:
         """Keep a scene that is finished, for requests that only show it otherwise."""
         with self._lock:
@@ -122,10 +140,11 @@ def planet_settings(request: Request, size: tuple[int, int]) -> MapSettings:
     return _seen(request, View(altitude, picture))
 
 
-def solve(scene: Scene, stage: Stage) -> None:
-    """Solve the atmosphere of a scene, and say so if it is not solved yet."""
+def solve(scene: Scene, stage: Stage, first: Callable[[], None]) -> None:
+    """Solve the atmosphere of a scene; if it is not solved yet, say so and do `first` before."""
     if not scene.sky.is_solved:
         stage(SOLVING, None)
+        first()
         _ = scene.sky.atmosphere
         stage(TRACING, None)
 

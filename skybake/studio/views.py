@@ -9,7 +9,7 @@ from functools import partial
 from threading import Event, Lock
 from typing import Any
 
-from skybake.errors import CancelledError, InputError, SkybakeError
+from skybake.errors import CancelledError, InputError, SkybakeError, UnsolvableError
 from skybake.image.layers import Pixels
 from skybake.image.settings import Encoding, MapSettings
 from skybake.projection import Equirect, Projection
@@ -173,19 +173,30 @@ def _answer(view: ViewRequest, reader: Reader, scenes: Scenes, send: Send) -> No
         view.is_solving = name == SOLVING
         tell(name, share)
 
+    glance = coarse(projection)
+
+    def show_nearby() -> None:
+        near = scenes.nearby(request, scene, view.cancel)
+        if near is None or glance is None:
+            return
+        try:
+            show(picture(near, glance), figures_of(near, request.picture), is_final=False)
+        except UnsolvableError:
+            # The picture comes with the solution.
+            return
+
     finished = scenes.finished(request, settings)
     if finished is not None and finished.pixels.shape[1::-1] == view.size:
         show(finished.pixels, figures_of(finished.scene, request.picture), is_final=True)
         return
     if finished is None:
         scene = scenes.scene(request, settings, view.cancel, partial(tell, SOLVING))
-        solve(scene, stage)
+        solve(scene, stage, show_nearby)
         first = scenes.first_glance(request, scene, view.cancel)
         prepare(first, stage)
     else:
         first = scene = finished.scene
     figures = figures_of(first, request.picture)
-    glance = coarse(projection)
     if glance is not None:
         show(picture(first, glance), figures, is_final=False)
         view.enter_slow()

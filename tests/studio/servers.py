@@ -27,10 +27,11 @@ released = Path({RELEASED!r}).absolute()
 earth = load_preset("earth").recipe
 solve = views.solve
 
-def held(scene, stage):
+def held(scene, stage, first):
     if scene.planet.recipe != earth:
         stage(scenes.SOLVING, None)
         scene.workers.tell(0.25)
+        first()
         while not released.exists():
             try:
                 scene.workers.check()
@@ -38,7 +39,7 @@ def held(scene, stage):
                 Path({STOPPED!r}).touch()
                 raise
             sleep(0.01)
-    solve(scene, stage)
+    solve(scene, stage, lambda: None)
 
 views.solve = held
 run()

@@ -250,6 +250,21 @@ def test_a_solution_says_so_and_gives_way_to_another_air(holding):
     assert after.get("final"), after
 
 
+def test_an_air_is_seen_before_it_is_solved(holding):
+    async def conversation(page):
+        number = await page.ask({"visibility": "30km"}, view=LARGE)
+        seen = [await page.next() for _ in range(3)]
+        await page.socket.send_json({"stop": "A"})
+        return seen, (await page.end(number))[-1][0]
+
+    (*stages, (header, pixels)), end = talk(holding, conversation)
+    assert [one["stage"] for one, _ in stages] == ["solving atmosphere"] * 2
+    assert (header["width"], header["final"]) == (256, False)
+    assert "--visibility=30km" in header["command"]
+    assert pixels[:64].min() > 0.0
+    assert end["cancelled"]
+
+
 def test_a_page_that_goes_away_stops_its_work(holding):
     holding.stopped.unlink(missing_ok=True)
 
