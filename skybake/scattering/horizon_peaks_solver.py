@@ -64,7 +64,7 @@ def solve_horizon_peaks(
     dark = dark._replace(polarised=dark.polarised[:0])
     rays = trace_grid(scaled, sparse)
     peaks = HorizonPeaks(source.copy())
-    add(transport_field(scaled, dark, peaks, sparse, rays, workers)[0])
+    add(transport_field(scaled, dark, peaks, sparse, rays, workers))
     return HorizonPeaks(source)
 
 
