@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from skybake.angles import cosine_between
 from skybake.jit.arguments import Flat, flatten
-from skybake.jit.workers import Workers
+from skybake.jit.workers import ONE_CPU, Workers
 from skybake.optics.delta_m import ScaledMedium
 from skybake.optics.legendre import legendre_polynomials
 from skybake.optics.matrix import scattering_plane
@@ -38,9 +38,6 @@ FIRST_SHELLS = 22
 SHELLS = 20
 ARC = math.radians(2.0)
 FIRST_ARC = math.radians(2.0)
-
-ONE_CPU = Workers(1)
-"""For work within rows that several workers share."""
 
 
 def scatter_sunlight(
