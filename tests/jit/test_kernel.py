@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 
 from skybake.jit.arguments import flatten
-from skybake.jit.kernel import kernel
+from skybake.jit.compile import compile_kernel
+from skybake.jit.kernel import inlined_kernel, kernel
 
 
 class Pair(NamedTuple):
@@ -208,3 +209,30 @@ def test_a_render_that_finds_its_kernels_imports_no_compiler(tmp_path):
         )
     assert result.stdout.split() == ["none", "True"]
     assert Path(tmp_path / "sky.exr").stat().st_size > 0
+
+
+def waves(x):
+    """Too long for the compiler to put it into its callers by itself."""
+    for _ in range(int(x) + 1):
+        x = math.sin(math.cos(math.sin(math.cos(math.sin(math.cos(math.sin(math.cos(x))))))))
+    for _ in range(int(x) + 2):
+        x = math.exp(math.sin(math.exp(math.sin(math.exp(math.sin(math.exp(math.sin(x))))))))
+    for _ in range(int(x) + 3):
+        x = math.tan(math.atan(math.tan(math.atan(math.tan(math.atan(math.sin(x)))))))
+    for _ in range(int(x) + 4):
+        x = math.cos(math.atan(math.cos(math.atan(math.cos(math.atan(math.sin(x)))))))
+    return x
+
+
+@pytest.mark.parametrize(("kind", "is_called"), [(kernel, True), (inlined_kernel, False)])
+def test_kernels_that_call_an_inlined_one_contain_it(kind, is_called):
+    inner = kind(waves)
+
+    @kernel
+    def twice(x):
+        return inner(inner(x) + 1.0)
+
+    code = compile_kernel(twice._dispatcher, "twice", (0.5,), "d").code
+    names = [name for name in code.split(b"\0") if b"waves" in name and b"NumbaEnv" not in name]
+    assert bool(names) is is_called
+    assert twice(0.5) == pytest.approx(waves(waves(0.5) + 1.0), rel=1e-12)
