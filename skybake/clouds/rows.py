@@ -26,6 +26,9 @@ _COARSEST = 0.004
 _ROWS = 4
 """Rows that a thread takes at a time."""
 
+_BLOCK = 16, 64
+"""Rows and columns of pixels that are seen one after the other: they see the same clouds."""
+
 See = Callable[[npt.NDArray[np.intp]], tuple[Floats, Floats]]
 
 
@@ -64,7 +67,7 @@ def see_rows(
     if columns < 3 or tolerance <= 0.0:
         return see(every.ravel())
     first = np.unique(np.append(np.arange(0, columns, 2), columns - 1))
-    at = every[:, first].ravel()
+    at = _by_blocks(every[:, first].ravel(), columns)
     some_seen, some_passing = see(at)
     layers, _, channels = some_seen.shape
     seen = np.empty((layers, rows * columns, channels), np.float32)
@@ -77,9 +80,17 @@ def see_rows(
         fill_between(*flat, tolerance, begin, end, seen, passing, is_due)
 
     workers.run_rows(rows, work, chunk=_ROWS)
-    rest = np.flatnonzero(is_due)
+    rest = _by_blocks(np.flatnonzero(is_due), columns)
     seen[:, rest], passing[:, rest] = see(rest)
     return seen, passing
+
+
+def _by_blocks(pixels: npt.NDArray[np.intp], columns: int) -> npt.NDArray[np.intp]:
+    """Return the numbers of pixels block by block."""
+    row, column = np.divmod(pixels, columns)
+    across = -(-columns // _BLOCK[1])
+    block = row // _BLOCK[0] * across + column // _BLOCK[1]
+    return pixels[np.argsort(block, kind="stable")]
 
 
 @kernel
