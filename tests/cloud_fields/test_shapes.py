@@ -34,7 +34,9 @@ def test_cover_and_optical_depth_are_those_of_the_layer(kind):
     assert depths[covered].mean() == pytest.approx(wanted.optical_depth, rel=0.03)
 
 
-@pytest.mark.parametrize(("kind", "cover"), [pytest.param("cumulus", 0.1, marks=pytest.mark.slow), ("cumulus", 0.9), ("cirrus", 0.8)],
+@pytest.mark.parametrize(
+    ("kind", "cover"),
+    [pytest.param("cumulus", 0.1, marks=pytest.mark.slow), ("cumulus", 0.9), ("cirrus", 0.8)],
 )
 def test_few_and_many_clouds_cover_what_they_should(kind, cover):
     depths = column_depths(field(kind, cover=cover), 113)
