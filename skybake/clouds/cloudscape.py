@@ -27,6 +27,7 @@ from skybake.clouds.layer import SolvedLayer, channels_to_wavelengths
 from skybake.clouds.march import Marching
 from skybake.clouds.sight import Eye, dim_rays, light_rays
 from skybake.clouds.solve import nearest_sun, solve_layers
+from skybake.clouds.sunlit import sunlit_share
 from skybake.clouds.unlit import Layer
 from skybake.jit.arguments import flatten
 from skybake.jit.workers import Workers
@@ -211,6 +212,12 @@ class Cloudscape:
         if self._keeps_light:
             keep_light(self._key, KeptLight(self.solved, *made))
         return made
+
+    @cached_property
+    def sunlit_air(self) -> Floats:
+        """Light that the air scattered once, as `lit` at the nodes, see `sunlit_share`."""
+        rays, _ = self.node_rays
+        return self.lit(rays._replace(table=sunlit_share(rays.table)), self.dimming)[0]
 
     @cached_property
     def node_rays(self) -> tuple[AirRays, Array]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from skybake.colour.response import EyeResponse, Response
 from skybake.colour.space import luminance_weights, rgb_from_xyz
 from skybake.image.discs import drawn_sun
 from skybake.image.horizontal import horizontal_irradiance
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from skybake.image.eclipsed import LeftShare
     from skybake.image.moonlit import Moonlit
     from skybake.image.night_glow import NightGlow
+    from skybake.night.air import NightAir
     from skybake.night.stars import Stars
     from skybake.sky.stokes_table import FoldedStokes
 
@@ -97,6 +99,11 @@ class Scene:
         """
         return drawn_sun(self)
 
+    @property
+    def response(self) -> Response:
+        """How its three channels respond to light."""
+        return EyeResponse()
+
     @cached_property
     def xyz_weights(self) -> Array:
         """XYZ [cd m⁻²] is the radiance per unit irradiance times these, (wavelength, 3)."""
@@ -120,21 +127,11 @@ class Scene:
         """The world's clouds over the observer, or None where there are none."""
         if not self.planet.clouds:
             return None
-        from skybake.clouds.build import build_cloudscape
-
         # Of no exposure, so that all share the light.
         weights = self.xyz_weights
         if self.sky.eclipse is not None:
             weights = weights * self.sky.eclipse.share_for_clouds[:, None]
-        return build_cloudscape(
-            self.planet.clouds,
-            self.sky,
-            weights,
-            time=self.settings.clouds.time,
-            quality=self.settings.clouds.quality,
-            workers=self.workers,
-            keeps_light=self.stages.keeps_light_of_clouds,
-        )
+        return self.stages.cloudscape(self.sky, weights, self.settings.clouds)
 
     @cached_property
     def stars(self) -> Stars | None:
@@ -158,7 +155,11 @@ class Scene:
             return None
         from skybake.image.night_glow import glow_over
 
-        return glow_over(self, night.frame, self.stages)
+        return glow_over(self, night.frame)
+
+    def night_air(self, *, has_airglow: bool, has_city: bool) -> NightAir:
+        """Return what of the night over the observer no hour changes."""
+        return self.stages.night_air(self.sky, has_airglow=has_airglow, has_city=has_city)
 
     @cached_property
     def stokes(self) -> FoldedStokes:

@@ -9,11 +9,14 @@ import OpenEXR
 import pytest
 
 import skybake
+from skybake.clouds.at_wavelengths import cubic_shares, nodes_among
 from skybake.colour.observer import LUMINOUS_EFFICACY, load_observer
 from skybake.formats.reader import read_attributes
 from skybake.formats.spectral_exr import read_stokes_channel, stokes_channel
 from skybake.image.sensor import DEFAULT_WAVELENGTHS, Sensor
-from skybake.optics.spectrum import hat_means
+from skybake.image.settings import Clouds
+from skybake.inspect.clouded import clouded_light
+from skybake.optics.spectrum import hat_means, hats_at
 from skybake.sky.disc import Disc
 from skybake.sky.sky import Sky
 from tests.cli.runs import invoke, listing
@@ -164,7 +167,6 @@ def test_a_recipe_and_a_name_tell_the_wavelengths(baked):
         ("earth", {"wavelengths": (300.0, 400.0)}, r"wavelength must be within .* got 300 nm"),
         ("earth", {"wavelengths": (500.0, 500.0)}, "spectral: wavelengths must ascend"),
         ("earth", {"wavelengths": ()}, "spectral: must be 1 to 512 wavelengths, got 0"),
-        ("earth-fair", {}, "spectral: needs a world without clouds"),
         ("earth-hillaire2020", {"wavelengths": (500.0,)}, "needs a preset of rendering spectral"),
         ("earth", {"mips": True}, "must be without mips"),
         ("earth", {"layers": True}, "must be without layers"),
@@ -229,18 +231,57 @@ def test_frames_of_a_sequence_have_spectra_too(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     "options",
     [
-        ("--moon-elevation", "20deg", "--sun", "10deg"),
+        ("--moon-elevation", "20deg", "--sun", "-30"),
         ("--lst", "3h", "--lat", "30", "--sun", "-30"),
+        ("--lst", "3h", "--lat", "30", "--sun", "-30", "--light-pollution", "5mcd"),
     ],
 )
-def test_lights_that_an_eye_alone_knows_are_refused(tmp_path, monkeypatch, options):
+def test_spectra_of_lights_of_the_night_have_the_luminance_of_the_map(
+    tmp_path, monkeypatch, options
+):
+    """Lines of the airglow included, each of which is spread over the channels beside it."""
     monkeypatch.chdir(tmp_path)
-    result = invoke(
-        "render", "--size", "32", "--spectral", "500,600", "--method", "hillaire", *options, "-q"
-    )
-    assert result.exit_code == 1
-    assert "needs a map without lights of the night" in result.stderr
-    assert listing(tmp_path) == []
+    quickly = ("--size", "32", "--method", "hillaire", "--pixel", "float", "-q")
+    result = invoke("render", *quickly, "--spectral", *options, "-o", "night.exr")
+    assert result.exit_code == 0, result.stderr
+    found, header = channels(tmp_path / "night.exr")
+    weights = np.array([0.2126390, 0.7151687, 0.0721923]) * header["whiteLuminance"]
+    seen = np.stack([found[name] for name in "RGB"], axis=-1) @ weights
+    _, radiance = spectrum(tmp_path / "night.exr")
+    assert radiance.min() > 0.0
+    assert luminance(radiance) == pytest.approx(seen, rel=2e-3)
+
+
+def test_the_green_line_is_in_the_channels_beside_it():
+    wavelengths = np.array([440.0, 550.0, 560.0, 675.0])
+    hats = hats_at(np.array([557.7, 558.0, 600.0]), wavelengths)
+    # 557.7 is nearer to 560, and the hat of 550 reaches 25 nm down and 10 up.
+    assert hats[0] == pytest.approx([0.0, 0.23 / 17.5, 0.77 / 17.5, 0.0], rel=1e-6)
+    assert (hats[2] == 0.0).all()
+
+
+def test_clouds_have_the_spectrum_of_rays(tmp_path):
+    """At wavelengths too between those at which the light of clouds is solved for."""
+    wavelengths = tuple(np.linspace(420.0, 680.0, 14).tolist())
+    planet = skybake.load_preset("earth-overcast")
+    skybake.bake(planet, tmp_path / "a.exr", quick(32, wavelengths, pixel="float"))
+    _, radiance = spectrum(tmp_path / "a.exr")
+    nodes = np.array(wavelengths)
+    assert nodes_among(nodes).size == 7
+    sky = Sky(planet, math.radians(30.0), wavelengths=nodes, method="hillaire")
+    weights = np.diag(hat_means(sky.star.irradiance, nodes))[:, 7:10]
+    row, column = 4, 10
+    zenith, azimuth = math.pi * 4.5 / 16, 2.0 * math.pi * 10.5 / 32 - math.pi
+    rays = clouded_light(planet, sky, np.array([zenith]), np.array([azimuth]), weights, Clouds())
+    assert radiance[row, column, 7:10] == pytest.approx(rays[0], rel=0.01)
+    assert np.ptp(radiance[row, column, 7:10] / rays[0]) < 2e-3
+
+
+def test_cubics_through_nodes_are_exact_for_cubics():
+    nodes, at = np.array([400.0, 450.0, 500.0, 560.0, 600.0]), np.linspace(400.0, 600.0, 23)
+    shares = cubic_shares(nodes, at)
+    assert (nodes / 500.0) ** 3 @ shares == pytest.approx((at / 500.0) ** 3, rel=1e-12)
+    assert shares.sum(axis=0) == pytest.approx(np.ones(23))
 
 
 def test_stars_that_the_day_outshines_are_in_no_spectrum(tmp_path):
