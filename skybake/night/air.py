@@ -56,6 +56,8 @@ class NightAir:
         XYZ of airglow at the level of its table. [cd m⁻²]
     city : ndarray of float64, shape (row, 3)
         XYZ of the glow of a city all around, whose luminance in the zenith is 1.
+    lamps : ndarray of float64, shape (channel,)
+        Radiance of the ground of that city.
     """
 
     def __init__(self, sky: Sky, *, has_airglow: bool, has_city: bool = False) -> None:
@@ -77,9 +79,10 @@ class NightAir:
                 seen = self.scattered(self.layer_from_ground(layer, theta), sky.workers)
                 seen += self.layer_directly(layer, self.zenith, self.passing)
                 self.airglow += lines_xyz(layer, self.channels, seen)
+        self.lamps = np.zeros(self.sources.passing(np.ones(1)).shape[1])
         self.city = np.zeros((ABOVE + BELOW, 3))
         if has_city:
-            self.city = self._city(sky)
+            self._add_city(sky)
 
     def scattered(self, rings: Array, workers: Workers = ALL_CPUS) -> Array:
         """Radiance that is scattered toward the observer, shape (row, wavelength).
@@ -106,18 +109,17 @@ class NightAir:
         weights[ABOVE:, NODES_ABOVE:] = _cubic_weights(BELOW, NODES_BELOW)
         return nodes, weights
 
-    def _city(self, sky: Sky) -> Array:
-        """XYZ of the glow of a city, and of the ground that it lights, shape (row, 3)."""
+    def _add_city(self, sky: Sky) -> None:
+        """Find the glow of a city, and that of the ground that it lights."""
         zenith = self.zenith[:ABOVE]
-        glow = ground_response(sky, zenith, sky.workers)
-        glow = glow * lamp_channels(self.channels)
+        lamps = lamp_channels(self.channels)
+        glow = ground_response(sky, zenith, sky.workers) * lamps
         on_plane = np.sin(zenith) * np.maximum(np.cos(zenith), 0.0)
         irradiance = 2.0 * math.pi * np.trapezoid(glow * on_plane[:, None], zenith, axis=0)
         albedo = sky.skylight.atmosphere.medium.ground_albedo
         ground = np.broadcast_to(albedo * irradiance / math.pi, (BELOW, albedo.size))
         xyz = np.concatenate([glow, ground]) @ self.weights
-        in_zenith: Array = xyz / xyz[0, 1]
-        return in_zenith
+        self.city, self.lamps = xyz / xyz[0, 1], lamps / xyz[0, 1]
 
     def rings(self, parts: Array, spectra: Array) -> Array:
         """Means around the vertical of a light, as `scattered` takes them.
