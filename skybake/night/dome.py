@@ -68,7 +68,7 @@ class NightDome:
         if zodiacal > 0.0:
             glows.append((zodiacal_glow(frame, sky, self.air.channels), zodiacal))
         self.airglow, self.city = airglow * MEAN_AIRGLOW, city
-        self.rings = np.zeros((STEPS, sky.wavelengths.size))
+        self.rings: Array = np.zeros((STEPS, sky.wavelengths.size))
         self.xyz = self._seen(glows)
         self.xyz += (self.airglow * self.air.airglow)[:, None]
         if city > 0.0:
