@@ -71,7 +71,7 @@ class NightAir:
         bearing = 2.0 * math.pi * np.arange(BEARINGS) / BEARINGS
         self.vectors = direction_from_angles(bearing, 0.5 * math.pi - self.zenith[:, None])
         self.passing = self.sources.passing(np.cos(self.zenith))
-        self.weights: Array = self.channels.weights
+        self.weights = self.channels.weights
         self.airglow = np.zeros((ABOVE + BELOW, 3))
         if has_airglow:
             theta = np.linspace(0.0, 0.5 * math.pi, STEPS)

@@ -37,7 +37,8 @@ class Channels:
         flat = np.ones_like(_EVERYWHERE)
         self._to_xyz = xyz_weights(self.wavelengths, _EVERYWHERE, flat)
         self._to_rgb = rgb_from_xyz(find_colour_space("lin_rec709"))
-        self.weights = self._to_xyz if self._is_spectral else np.linalg.inv(self._to_rgb).T
+        from_rgb = np.asarray(np.linalg.inv(self._to_rgb).T, dtype=float)
+        self.weights: Array = self._to_xyz if self._is_spectral else from_rgb
 
     def hold(self, spectra: Array) -> Array:
         """Return spectra, (..., wavelength), as they are dimmed by the air, (..., channel)."""
