@@ -8,6 +8,7 @@ from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.night.channels import Channels
 from skybake.optics.medium import Array
 from skybake.scattering.atmosphere import load_atmosphere
+from skybake.scattering.tables import Atmosphere
 from skybake.sky.extended import STEPS, ExtendedSky
 from skybake.sky.sky import Sky
 
@@ -62,21 +63,23 @@ def ground_response(sky: Sky, zenith: Array, workers: Workers = ALL_CPUS) -> Arr
     Under a sky that is alike all around, what a bright ground adds to a black one, over the
     radiance of that ground. It does not depend on how bright the ground is.
     """
+    mu, uniform = np.cos(zenith), np.ones(STEPS)
+    radius = sky.skylight.radius
+    lit, black = (ExtendedSky(each, radius) for each in over_two_grounds(sky, workers))
+    seen = [each.scattered(mu, uniform, workers) for each in (lit, black)]
+    response: Array = (seen[0] - seen[1]) / lit.ground_radiance(uniform)
+    return response
+
+
+def over_two_grounds(sky: Sky, workers: Workers = ALL_CPUS) -> tuple[Atmosphere, Atmosphere]:
+    """Return the air of a sky over a ground that reflects, its own if it does, and a black one."""
     own = sky.skylight.atmosphere.medium
-    black = own._replace(ground_albedo=np.zeros_like(own.ground_albedo))
     lit = own
     if own.ground_albedo.min() < LEAST_ALBEDO:
         lit = own._replace(ground_albedo=np.full_like(own.ground_albedo, USUAL_ALBEDO))
-    mu, uniform = np.cos(zenith), np.ones(STEPS)
-    radius = sky.skylight.radius
-    seen = []
-    for medium in (lit, black):
-        extended = ExtendedSky(load_atmosphere(medium, sky.table_method, workers), radius)
-        seen.append(extended.scattered(mu, uniform, workers))
-        if medium is lit:
-            ground = extended.ground_radiance(uniform)
-    response: Array = (seen[0] - seen[1]) / ground
-    return response
+    black = own._replace(ground_albedo=np.zeros_like(own.ground_albedo))
+    method = sky.table_method
+    return load_atmosphere(lit, method, workers), load_atmosphere(black, method, workers)
 
 
 def toward_city(vectors: Array, azimuth: float | None) -> Array:
