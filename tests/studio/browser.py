@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 SETTLED = "#frame[data-state=settled]"
-LONGEST = 240_000  # ms, since the first picture may compile kernels
+LONGEST = 600_000  # ms, since the first picture may compile kernels
 
 needs_browser = pytest.mark.skipif(
     shutil.which("chromium") is None or find_spec("playwright") is None,
