@@ -28,13 +28,9 @@ def test_bytes_depend_neither_on_the_run_nor_on_the_number_of_threads(tmp_path, 
     assert first == alone
 
 
-def start_large(folder, suffix="exr", **keywords):
+def start_large(folder, suffix="exr", size="8192x4096"):
     """Start a render that takes long, and wait until it writes."""
-    process = start(
-        *("render", "--size", "8192x4096", "-q", "--preview", "-o", f"a.{suffix}"),
-        cwd=folder,
-        **keywords,
-    )
+    process = start(*("render", "--size", size, "-q", "--preview", "-o", f"a.{suffix}"), cwd=folder)
     while not listing(folder):
         assert process.poll() is None
         time.sleep(0.01)
@@ -99,13 +95,15 @@ def test_what_a_killed_process_left_goes_with_the_next_run(tmp_path):
 
 @pytest.mark.usefixtures("warm")
 def test_a_process_leaves_alone_what_another_is_writing(tmp_path):
-    process = start_large(tmp_path)
+    process = start_large(tmp_path, size="4096x2048")
+    process.send_signal(signal.SIGSTOP)
     render(tmp_path / "a.exr", *SMALL)
+    process.send_signal(signal.SIGCONT)
     assert process.poll() is None
     _, errors = process.communicate(timeout=240)
     assert (process.returncode, errors) == (0, "")
     assert listing(tmp_path) == ["a.exr", "a.png"]
-    assert read_image(tmp_path / "a.exr")[0].shape == (4096, 8192, 3)
+    assert read_image(tmp_path / "a.exr")[0].shape == (2048, 4096, 3)
 
 
 def test_an_interrupt_while_kernels_compile_ends_at_once(tmp_path):
