@@ -142,9 +142,15 @@ KILLED = {
 }
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("warm")
-@pytest.mark.parametrize("way", KILLED)
+@pytest.mark.parametrize(
+    "way",
+    [
+        pytest.param("render", marks=pytest.mark.slow),
+        pytest.param("cubemap", marks=pytest.mark.nightly),
+        pytest.param("preview", marks=pytest.mark.nightly),
+    ],
+)
 def test_killed_at_any_moment_it_leaves_whole_files_or_none(tmp_path, way):
     """Fifty kills in all; the next run of the same target takes away what they left."""
     begun = time.perf_counter()
@@ -175,9 +181,14 @@ def half_steps(path):
     return np.where(steps & 0x8000, -(steps & 0x7FFF), steps)
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("warm")
-@pytest.mark.parametrize("processor", ["generic", "haswell"])
+@pytest.mark.parametrize(
+    "processor",
+    [
+        pytest.param("generic", marks=pytest.mark.nightly),
+        pytest.param("haswell", marks=pytest.mark.slow),
+    ],
+)
 def test_other_processors_make_the_same_map_but_for_the_last_bit(tmp_path, processor):
     arguments = ("--size", "128x64", "--sun", "-3deg", "--pixel", "half")
     render(tmp_path / "here.exr", *arguments)
