@@ -166,6 +166,7 @@ def test_polarisation_that_is_not_known_is_refused_in_a_line(tmp_path, preset, v
     assert listing(tmp_path) == []
 
 
+@pytest.mark.slow
 def test_light_from_a_deck_is_unpolarised_and_the_sky_above_it_is_not(tmp_path):
     deck = skybake.load_preset("earth-overcast")
     degrees = {}
