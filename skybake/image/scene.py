@@ -79,6 +79,8 @@ class Scene:
             workers=workers,
         )
         self.sky.check_clouds()
+        medium = self.sky.medium
+        settings.night.check_altitude(settings.view.altitude, medium.r_top - medium.r_bottom)
         if settings.view.below_horizon == "extend":
             from skybake.image.below_horizon import check_horizon
 

@@ -119,7 +119,9 @@ class NightAir:
         """Find the glow of a city, and that of the ground that it lights."""
         zenith = self.zenith[:ABOVE]
         lamps = lamp_channels(self.channels)
-        glow = ground_response(sky, zenith, sky.workers) * lamps
+        above = self._nodes[self._nodes < self.zenith_horizon]
+        response = ground_response(sky, above, sky.workers)
+        glow = self._between[:ABOVE, : above.size] @ response * lamps
         on_plane = np.sin(zenith) * np.maximum(np.cos(zenith), 0.0)
         irradiance = 2.0 * math.pi * np.trapezoid(glow * on_plane[:, None], zenith, axis=0)
         albedo = sky.skylight.atmosphere.medium.ground_albedo
