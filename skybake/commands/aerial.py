@@ -144,7 +144,7 @@ _EXR = values.with_suffix(".exr")
     show_default="include, with --time",
     help="Whether moonlight is in the air.",
 )
-@moonlight_options
+@moonlight_options()
 @altitude_option()
 @clouds_options()
 @click.option(
