@@ -158,6 +158,9 @@ _all_workers: weakref.WeakSet[Workers] = weakref.WeakSet()
 ALL_CPUS = Workers()
 """The default of whoever is given no workers."""
 
+ONE_CPU = Workers(1)
+"""For work within rows that several workers share."""
+
 
 def _forget_threads() -> None:
     """Let a forked process start threads of its own: those of its parent are not in it."""
