@@ -161,12 +161,14 @@ def solve_layer(
         scattering = Scattering(particles.order, quadrature, particles.moments, sun)
         near = known.get(s - 1) if s > own else known.get(s + 1)
         diffuse = solve_diffuse(voxels, scattering, entering, workers, near)
-        known[s] = diffuse.known
+        # No more than what other suns start from is held while they are solved for.
+        known = {at: each for at, each in known.items() if at == own} | {s: diffuse.known}
         beam[s] = voxels.beam
         fill_moments(diffuse, moments[s])
         irradiance[s] = entering.sun.T
         mean[s] = diffuse.moments[:, :, :, 0].mean(axis=(2, 3), dtype=float).T
         down[s], down_clear[s] = diffuse.down, entering.down
+        del diffuse, near
     degree = degrees(particles.order)
     light = LayerLight(
         beam=beam,

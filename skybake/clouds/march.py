@@ -141,7 +141,8 @@ def fill_march(
 
     Notes
     -----
-    Midpoints of steps of equal optical depth; empty space is left out by its clearance. Sunlight
+    Midpoints of steps of equal optical depth; empty space is left out by its clearance, and close
+    to clouds by the distance from their displaced surface. Sunlight
     that is scattered once is exact; that within forward peaks is followed as a series in the depth
     up to there (`Particles`); the rest comes from the moments of diffuse light.
     """

@@ -1,11 +1,12 @@
 """The light of clouds on disk."""
 
 import math
+import weakref
 
 import numpy as np
 import pytest
 
-from skybake.clouds import cloudscape
+from skybake.clouds import cloudscape, layer
 from skybake.image.scene import Scene
 from skybake.image.settings import map_settings
 from skybake.image.stages import Stages
@@ -99,3 +100,17 @@ def test_light_on_disk_is_counted_apart(tmp_path, monkeypatch):
     (usage,) = cache_usage()
     assert (usage.atmospheres, usage.cloud_tiles, usage.cloud_lights) == (1, 1, 1)
     assert usage.total_bytes == 9
+
+
+def test_light_of_one_sun_is_not_held_while_that_of_another_is_solved_for(world, monkeypatch):
+    solve, before = layer.solve_diffuse, []
+
+    def alone(*given):
+        assert [each for each in before if each() is not None] == []
+        solved = solve(*given)
+        before.append(weakref.ref(solved.moments))
+        return solved
+
+    monkeypatch.setattr(layer, "solve_diffuse", alone)
+    assert scene_of(world, sun=4.0).cloudscape.solved
+    assert len(before) > 2
