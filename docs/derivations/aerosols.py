@@ -9,6 +9,7 @@ import sys
 
 import numpy as np
 from mie import (
+    BEYOND_EYE,
     WAVELENGTHS,
     gamma_distribution,
     lognormal_distribution,
@@ -121,7 +122,7 @@ def opac_mixture(name, mineral_absorption=1.0):
             part.imaginary = [mineral_absorption * value for value in part.imaginary]
     return [
         mix([(MIXTURES[name][key], *part.scatter(w)) for key, part in components.items()])
-        for w in WAVELENGTHS
+        for w in BEYOND_EYE
     ]
 
 
@@ -130,7 +131,7 @@ def volcanic():
     acid = Component("sulfate")
     acid.deviation = VOLCANIC_DEVIATION
     acid.mode = VOLCANIC_EFFECTIVE_RADIUS * np.exp(-2.5 * np.log(VOLCANIC_DEVIATION) ** 2)
-    return [mix([(1.0, *acid.scatter(w))]) for w in WAVELENGTHS]
+    return [mix([(1.0, *acid.scatter(w))]) for w in BEYOND_EYE]
 
 
 def venus():
@@ -146,10 +147,10 @@ def venus():
     return results
 
 
-def write_tables(name, title, origin, results):
+def write_tables(name, title, origin, results, wavelengths=BEYOND_EYE):
     """Write what is kept of an aerosol, and print it at 550 nm."""
     extinction, albedo, phases = (np.array(column) for column in zip(*results, strict=True))
-    relative = extinction / np.interp(550.0, WAVELENGTHS, extinction)
+    relative = extinction / np.interp(550.0, wavelengths, extinction)
     asymmetry = [mean_cosine(phase, ANGLES) for phase in phases]
     write(
         f"{name}.csv",
@@ -157,7 +158,7 @@ def write_tables(name, title, origin, results):
         ["wavelength_nm", "relative_extinction", "single_scattering_albedo", "asymmetry"],
         [
             (f"{w:.0f}", f"{e:.4f}", f"{a:.5f}", f"{g:.4f}")
-            for w, e, a, g in zip(WAVELENGTHS, relative, albedo, asymmetry, strict=True)
+            for w, e, a, g in zip(wavelengths, relative, albedo, asymmetry, strict=True)
         ],
     )
     write_phase(
@@ -165,8 +166,9 @@ def write_tables(name, title, origin, results):
         [f"{title}: phase function [per sr], columns by wavelength [nm].", *origin],
         ANGLES,
         phases,
+        wavelengths,
     )
-    at = [float(np.interp(550.0, WAVELENGTHS, x)) for x in (extinction, albedo, asymmetry)]
+    at = [float(np.interp(550.0, wavelengths, x)) for x in (extinction, albedo, asymmetry)]
     print(f"{name}: {at[0]:.4g} um2, albedo {at[1]:.4f}, asymmetry {at[2]:.4f}", flush=True)
 
 
@@ -217,7 +219,7 @@ def main(names):
             "of the absorber in Perez-Hoyos et al. (2018), J. Geophys. Res. Planets 123, 145.",
             SCRIPT,
         ]
-        write_tables("venus_cloud", "Cloud tops of Venus", origin, venus())
+        write_tables("venus_cloud", "Cloud tops of Venus", origin, venus(), WAVELENGTHS)
 
 
 if __name__ == "__main__":

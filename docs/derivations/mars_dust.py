@@ -9,7 +9,7 @@ it stems from absorption within a grain, which depends little on its shape.
 
 import numpy as np
 from mie import (
-    WAVELENGTHS,
+    BEYOND_EYE,
     gamma_distribution,
     normalise,
     read_columns,
@@ -85,8 +85,8 @@ def blend(phase, sides):
 def main():
     """Write both tables."""
     _, _, reference = spheres(MEASURED_WAVELENGTH)
-    extinction, albedo, phases = zip(*(spheres(w) for w in WAVELENGTHS), strict=True)
-    relative = np.array(extinction) / np.interp(550.0, WAVELENGTHS, extinction)
+    extinction, albedo, phases = zip(*(spheres(w) for w in BEYOND_EYE), strict=True)
+    relative = np.array(extinction) / np.interp(550.0, BEYOND_EYE, extinction)
     origin = [
         "Spheres with the refractive indices of Wolff et al. (2009), J. Geophys. Res. 114,",
         "E00D04; gamma distribution, effective radius 1.5 um, effective variance 0.3.",
@@ -98,7 +98,7 @@ def main():
         ["wavelength_nm", "relative_extinction", "single_scattering_albedo"],
         [
             (f"{w:.0f}", f"{e:.4f}", f"{a:.4f}")
-            for w, e, a in zip(WAVELENGTHS, relative, albedo, strict=True)
+            for w, e, a in zip(BEYOND_EYE, relative, albedo, strict=True)
         ],
     )
     write_phase(
@@ -112,6 +112,7 @@ def main():
         ],
         ANGLES,
         [blend(phase, measured_phase() * colour(phase, reference)) for phase in phases],
+        BEYOND_EYE,
     )
 
 

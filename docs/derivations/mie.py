@@ -14,6 +14,9 @@ DATA = HERE.parents[1] / "skybake" / "data"
 
 WAVELENGTHS = np.append(np.arange(360.0, 821.0, 20.0), 830.0)
 
+BEYOND_EYE = np.concatenate([[350.0], WAVELENGTHS, np.arange(850.0, 1001.0, 50.0)])
+"""Where refractive indices are known beyond what the eye sees."""
+
 
 def gamma_distribution(effective_radius, effective_variance, radius):
     """Relative number of particles in equal steps of radius: Hansen & Travis (1974), eq. 2.56."""
@@ -85,12 +88,12 @@ def write(name, header, columns, rows):
     (DATA / name).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def write_phase(name, header, angles, phases):
-    """Write phase functions at `WAVELENGTHS`, shape (wavelength, angle)."""
+def write_phase(name, header, angles, phases, wavelengths=WAVELENGTHS):
+    """Write phase functions, shape (wavelength, angle)."""
     write(
         name,
         header,
-        ["angle_deg", *(f"{w:.0f}" for w in WAVELENGTHS)],
+        ["angle_deg", *(f"{w:.0f}" for w in wavelengths)],
         [
             (f"{angle:g}", *(f"{value:.5g}" for value in row))
             for angle, row in zip(angles, np.transpose(phases), strict=True)

@@ -13,6 +13,7 @@ import titan_haze
 from mie import gamma_distribution, lognormal_distribution, read_columns, write
 
 WAVELENGTHS = (360.0, 440.0, 550.0, 680.0, 830.0)
+BEYOND_EYE = (350.0, *WAVELENGTHS, 1000.0)
 ANGLES = np.concatenate([np.arange(0.0, 130.0, 2.0), np.arange(130.0, 180.1, 1.0)])
 MU = np.cos(np.radians(ANGLES))
 
@@ -48,7 +49,7 @@ def component(part, wavelength):
 
 
 def mixture(name, mineral_absorption=1.0):
-    """Matrices of a mixture at `WAVELENGTHS`."""
+    """Matrices of a mixture at `BEYOND_EYE`."""
     components = {key: aerosols.Component(key) for key in aerosols.MIXTURES[name]}
     for key, part in components.items():
         if key.startswith("mineral"):
@@ -56,7 +57,7 @@ def mixture(name, mineral_absorption=1.0):
     counts = aerosols.MIXTURES[name]
     return [
         sum(counts[key] * component(part, w) for key, part in components.items())
-        for w in WAVELENGTHS
+        for w in BEYOND_EYE
     ]
 
 
@@ -65,7 +66,7 @@ def volcanic():
     acid = aerosols.Component("sulfate")
     acid.deviation = aerosols.VOLCANIC_DEVIATION
     acid.mode = aerosols.VOLCANIC_EFFECTIVE_RADIUS * np.exp(-2.5 * np.log(acid.deviation) ** 2)
-    return [component(acid, w) for w in WAVELENGTHS]
+    return [component(acid, w) for w in BEYOND_EYE]
 
 
 def venus():
@@ -98,7 +99,8 @@ def titan():
 def write_ratios(name, title, matrices):
     """Write the ratios of matrices."""
     columns, values = ["angle_deg"], [ANGLES]
-    for wavelength, (p11, p12, p33) in zip(WAVELENGTHS, matrices, strict=True):
+    wavelengths = WAVELENGTHS if len(matrices) == len(WAVELENGTHS) else BEYOND_EYE
+    for wavelength, (p11, p12, p33) in zip(wavelengths, matrices, strict=True):
         columns += [f"p12_{wavelength:.0f}", f"p33_{wavelength:.0f}"]
         values += [p12 / p11, p33 / p11]
     write(

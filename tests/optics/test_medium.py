@@ -8,6 +8,7 @@ import pytest
 from skybake.errors import PresetError
 from skybake.optics.medium import ALTITUDE_NODES, altitude_nodes, build_medium
 from skybake.optics.phase import SCATTERING_ANGLES, integrate_phase, scattering_angles
+from skybake.optics.spectrum import limb_darkening, star_irradiance
 from skybake.preset import TentProfile, load_preset, preset_names
 
 RGB = np.array([680.0, 550.0, 440.0])
@@ -20,12 +21,19 @@ def optical_depth(planet, wavelengths):
     return medium.extinction * np.trapezoid(medium.density, altitude, axis=0)[:, None]
 
 
-@pytest.mark.parametrize("name", preset_names())
-def test_every_preset_is_physical_from_360_to_830_nm(name):
+VISIBLE = np.array([360.0, 405.0, 550.0, 643.0, 780.0, 830.0])
+BEYOND_EYE = np.array([350.0, 550.0, 870.0, 1000.0])
+WIDE = "earth", "earth-clear", "earth-hazy", "earth-urban", "earth-volcanic", "mars", "mars-storm"
+
+
+@pytest.mark.parametrize(
+    ("name", "wavelengths"),
+    [(name, VISIBLE) for name in preset_names()] + [(name, BEYOND_EYE) for name in WIDE],
+)
+def test_every_preset_is_physical_from_360_to_830_nm_and_some_beyond(name, wavelengths):
     planet = load_preset(name)
-    wavelengths = (
-        RGB if planet.rendering == "rgb" else np.array([360.0, 405.0, 550.0, 643.0, 780.0, 830.0])
-    )
+    if planet.rendering == "rgb":
+        wavelengths = RGB
     medium = build_medium(planet, wavelengths)
     count = len(planet.constituents)
     assert medium.density.shape == (ALTITUDE_NODES, count)
@@ -38,6 +46,15 @@ def test_every_preset_is_physical_from_360_to_830_nm(name):
     assert np.all((medium.ground_albedo >= 0.0) & (medium.ground_albedo <= 1.0))
     np.testing.assert_allclose(integrate_phase(np.moveaxis(medium.phase, 1, 0)), 1.0, rtol=1e-4)
     assert all(array.dtype == np.float64 for array in medium[2:])
+
+
+def test_light_and_the_suns_disc_are_known_where_the_air_is():
+    for planet in (EARTH, MARS):
+        assert (star_irradiance(planet.star, BEYOND_EYE) > 0.0).all()
+        assert np.isfinite(limb_darkening(planet.star, BEYOND_EYE)).all()
+    # ASTM G173, and leaves, which are bright in the near infrared.
+    assert star_irradiance(EARTH.star, np.array([1000.0]))[0] == pytest.approx(0.743, abs=0.01)
+    assert build_medium(EARTH, np.array([1000.0])).ground_albedo[0] > 0.35
 
 
 def test_order_of_wavelengths_does_not_matter():
@@ -140,10 +157,10 @@ def test_martian_ground_is_that_of_arabia():
 
 def test_wavelengths_beyond_the_presets_spectra_are_refused_with_their_range():
     with pytest.raises(PresetError) as caught:
-        build_medium(EARTH, np.array([550.0, 900.0]))
+        build_medium(EARTH, np.array([550.0, 1001.0]))
     assert str(caught.value) == (
         "earth.toml: constituents.ozone.cross_section_m2: "
-        "wavelength must be within 360 to 830 nm, got 900 nm"
+        "wavelength must be within 350 to 1000 nm, got 1001 nm"
     )
 
 

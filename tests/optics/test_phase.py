@@ -106,8 +106,8 @@ def test_a_table_of_one_column_holds_at_all_wavelengths():
 
 
 def test_a_table_is_refused_beyond_its_wavelengths():
-    with pytest.raises(PresetError, match=r"must be within 360 to 830 nm, got 359.9 nm$"):
-        build_phase(mars_dust(), np.array([550.0, 359.9]))
+    with pytest.raises(PresetError, match=r"must be within 350 to 1000 nm, got 349.9 nm$"):
+        build_phase(mars_dust(), np.array([550.0, 349.9]))
 
 
 def test_martian_dust_is_bluer_than_the_sun_only_close_to_it():
