@@ -63,9 +63,8 @@ FIGURES = [
 
 def ends_and_middle(cases, suns):
     """Leave cases of other suns to slow runs."""
-    return [
-        pytest.param(*case, marks=() if case[1] in suns else pytest.mark.slow) for case in cases
-    ]
+    others = pytest.mark.slow
+    return [pytest.param(*case, marks=() if case[1] in suns else others) for case in cases]
 
 
 @pytest.mark.parametrize(("preset", "elevation", "ev"), ends_and_middle(FIGURES, (60, 15, 0)))

@@ -47,7 +47,12 @@ SIGNALS = [
 @pytest.mark.usefixtures("warm")
 @pytest.mark.parametrize(
     ("suffix", "number", "status", "word"),
-    [*(("exr", *one) for one in SIGNALS), ("hdr", *SIGNALS[1])],
+    [
+        *(("exr", *one) for one in SIGNALS),
+        pytest.param("hdr", *SIGNALS[0], marks=pytest.mark.slow),
+        ("hdr", *SIGNALS[1]),
+        pytest.param("hdr", *SIGNALS[2], marks=pytest.mark.slow),
+    ],
 )
 def test_a_signal_that_ends_leaves_no_file(tmp_path, suffix, number, status, word):
     process = start_large(tmp_path, suffix)
