@@ -33,7 +33,8 @@ def block_clearance(
         squared = _nearest_along(squared, axis, float(size), is_periodic=axis > 0)
     # A field without cloud is clear as far as its own period.
     farthest = float(np.max(block * is_cloudy.shape))
-    return np.minimum(np.sqrt(squared), farthest).astype(np.float32)
+    # In the order of a field from disk, for which kernels are compiled.
+    return np.minimum(np.sqrt(squared), farthest).astype(np.float32, order="C")
 
 
 def blocks_of(

@@ -127,7 +127,7 @@ def test_no_star_is_at_the_poles(preset, elevation):
 
 
 @pytest.mark.parametrize("preset", PRESETS)
-@pytest.mark.parametrize("elevation", [60.0, 5.0, 0.0, -4.0])
+@pytest.mark.parametrize("elevation", [60.0, pytest.param(5.0, marks=pytest.mark.slow), 0.0, -4.0])
 def test_nothing_is_black_below_the_horizon(preset, elevation):
     luminance = sky_luminance(scene(preset, elevation))
     below, above = luminance[16:], luminance[:16]

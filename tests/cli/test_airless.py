@@ -23,7 +23,9 @@ def done(*arguments):
     return result.stdout
 
 
-@pytest.mark.parametrize("method", ["full", "scalar", "hillaire", "march"])
+@pytest.mark.parametrize(
+    "method", ["full", pytest.param("scalar", marks=pytest.mark.slow), "hillaire", "march"]
+)
 def test_ground_is_lit_as_a_white_surface_times_its_albedo_and_the_sky_is_black(method):
     grey = ("--ground-albedo", "0.3", "--colorspace", "xyz", "--units", "nits", "--pixel", "float")
     told = json.loads(

@@ -18,7 +18,7 @@ WAYS = {
 }
 
 
-@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("way", ["exr", pytest.param("mars", marks=pytest.mark.slow), "cube"])
 @pytest.mark.usefixtures("warm")
 def test_bytes_depend_neither_on_the_run_nor_on_the_number_of_threads(tmp_path, way):
     first = render(tmp_path / "first.exr", *WAYS[way])
@@ -45,8 +45,15 @@ SIGNALS = [
 
 
 @pytest.mark.usefixtures("warm")
-@pytest.mark.parametrize("suffix", ["exr", "hdr"])
-@pytest.mark.parametrize(("number", "status", "word"), SIGNALS)
+@pytest.mark.parametrize(
+    ("suffix", "number", "status", "word"),
+    [
+        *(("exr", *one) for one in SIGNALS),
+        pytest.param("hdr", *SIGNALS[0], marks=pytest.mark.slow),
+        ("hdr", *SIGNALS[1]),
+        pytest.param("hdr", *SIGNALS[2], marks=pytest.mark.slow),
+    ],
+)
 def test_a_signal_that_ends_leaves_no_file(tmp_path, suffix, number, status, word):
     process = start_large(tmp_path, suffix)
     process.send_signal(number)

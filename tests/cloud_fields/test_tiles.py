@@ -10,6 +10,7 @@ from skybake.cloud_fields.build import build_field
 from skybake.cloud_fields.light_grid import ExtinctionGrid, light_grid
 from skybake.cloud_fields.tiles import read_tile, tile_bytes, tile_field
 from skybake.errors import InputError
+from skybake.jit.arguments import flatten
 from skybake.preset.clouds_model import Tile
 from tests.cloud_fields.layers import field, layer
 from tests.cloud_fields.sampling import clearance, column_depths, extinction, random_points
@@ -106,6 +107,15 @@ def test_a_layer_of_voxels_lies_where_it_says(tmp_path):
     clouds = build_field(layer("cumulus", kind="tile", base=BASE, optical_depth=0.0, tile=tile))
     assert tuple(clouds.origin) == (0.5, 1.0)
     assert (clouds.base, clouds.top) == (1.0, 2.0)
+
+
+def test_a_layer_of_voxels_needs_the_kernels_of_every_other(tmp_path):
+    path = tmp_path / "cloud.npz"
+    path.write_bytes(tile_bytes(voxels((10, 12, 14))))
+    tile = Tile(str(path), "0", "linear", (0.0, 0.0))
+    clouds = build_field(layer("cumulus", kind="tile", base=BASE, optical_depth=0.0, tile=tile))
+    assert min(clouds.clearance.shape) > 1
+    assert flatten(clouds).kinds == flatten(field("stratus")).kinds
 
 
 def content(**arrays):

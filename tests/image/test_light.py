@@ -115,7 +115,10 @@ def solved_illuminance(scene):
     return float((direct + sky)[: luminous.size] @ luminous)
 
 
-@pytest.mark.parametrize("elevation", [60.0, 10.0, 2.0, -2.0, -6.0, -9.0])
+@pytest.mark.parametrize(
+    "elevation",
+    [60.0, *(pytest.param(each, marks=pytest.mark.slow) for each in (10.0, -2.0, -6.0)), 2.0, -9.0],
+)
 @pytest.mark.parametrize("preset", ["earth", "mars"])
 def test_light_of_a_map_is_the_solvers_own_within_half_a_percent(tmp_path, preset, elevation):
     baked, settings = bake_map(

@@ -65,7 +65,7 @@ def test_light_below_0_by_rounding_is_none(spoil):
 
 @pytest.mark.parametrize(
     "seed",
-    [16, pytest.param(22, marks=pytest.mark.slow), 24, pytest.param(116, marks=pytest.mark.slow)],
+    [16, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (22, 24, 116))],
 )
 def test_a_sharp_shadow_in_thin_air_leaves_light_that_is_not_negative(tmp_path, seed):
     """Few azimuths ring there, and cubics swing below 0 between rays that are not: where they swing
