@@ -46,16 +46,19 @@ DISC = 330
 SHOT = (328, 246)
 FILTERS = (None, 0.0, 30.0, 60.0, 90.0, 120.0)
 
+CROSSED = 30.0
+"""Angle of the filter before clouds. [deg]"""
+
 MOST = 12.0
 """Difference that the map of differences shows at most. [%]"""
 
 _PIPELINE = skybake.Pipeline()
 
 
-def scene(sun: float, projection: object, **values: object) -> Scene:
-    """Return the sky of `earth` at an elevation of the sun. [deg]"""
+def scene(sun: float, projection: object, preset: str = "earth", **values: object) -> Scene:
+    """Return the sky of a preset at an elevation of the sun. [deg]"""
     settings = skybake.map_settings(projection, sun_elevation=math.radians(sun), **values)
-    return _PIPELINE.scene("earth", settings)
+    return _PIPELINE.scene(preset, settings)
 
 
 def fisheye() -> Fisheye:
@@ -181,6 +184,24 @@ def filters() -> None:
         shown = light if angle is None else 2.0 * through_filter(light, stokes, math.radians(angle))
         tiles.append((label, Image.fromarray(code_values(shown, sky.settings.encoding, ev))))
     save("polarisation-filter", page([tiles[:3], tiles[3:]], None))
+
+
+def clouds() -> None:
+    """Show cumuli without a filter and with one that darkens the sky between them."""
+    view = Perspective(*SHOT, fov=math.radians(75.0), azimuth=math.radians(275.0), elevation=0.35)
+    sky = scene(25.0, view, "earth-fair", sun_azimuth=math.pi)
+    (canvas,) = view.canvases()
+    raster = Raster(sky, canvas)
+    light, stokes = raster.rows(0, SHOT[1]), raster.band("stokes", 0, SHOT[1])
+    encoding, ev = sky.settings.encoding, picture_ev(sky, PictureSettings())
+    even, odd, whole = (each @ sky.luminance for each in (stokes[..., :3], stokes[..., 3:], light))
+    through = 2.0 * through_filter(light, stokes, math.radians(CROSSED))
+    tiles = [
+        ("no filter", Image.fromarray(code_values(light, encoding, ev))),
+        (f"filter at {CROSSED:g}°", Image.fromarray(code_values(through, encoding, ev))),
+        ("degree of polarisation", Image.fromarray(degree_colours(np.hypot(even, odd) / whole))),
+    ]
+    save("polarisation-clouds", page([tiles], None))
 
 
 def scalar() -> None:
@@ -326,7 +347,13 @@ def _paint(reflectance: list[float]) -> dict[str, object]:
     return {"type": "diffuse", "reflectance": {"type": "rgb", "value": reflectance}}
 
 
-SHEETS = {"skies": skies, "filters": filters, "scalar": scalar, "spheres": spheres}
+SHEETS = {
+    "skies": skies,
+    "filters": filters,
+    "clouds": clouds,
+    "scalar": scalar,
+    "spheres": spheres,
+}
 
 
 def main(names: list[str]) -> None:

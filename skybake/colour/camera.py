@@ -29,6 +29,7 @@ LOST = 0.01
 """Share of a channel's response to daylight that may be further beyond."""
 
 _LARGEST = 1e30
+_SMALLEST = 1e-30
 _D65 = Path(__file__).parents[1] / "data" / "cie_d65.csv"
 
 
@@ -200,8 +201,9 @@ def _check_channels(where: str, response: CameraResponse) -> None:
     for name, channel, seen in zip(
         COLUMNS[1:], zip(*response.values, strict=True), response.curves.sum(axis=0), strict=True
     ):
-        if min(channel) < 0.0 or not seen > 0.0:
+        if min(channel) < 0.0 or not seen > _SMALLEST:
             raise InputError(
-                f"{where}: {name} must be at least 0, and greater where light is seen, got "
+                f"{where}: {name} must be at least 0, and greater than {_SMALLEST:g} where light "
+                f"is seen, got "
                 f"{min(channel):g} to {max(channel):g}"
             )

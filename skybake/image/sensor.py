@@ -21,6 +21,9 @@ MOST_WAVELENGTHS = 512
 MOST_AT_ONCE = 48
 """Wavelengths that are solved for together."""
 
+LONGEST = 1e6
+"""[nm]"""
+
 CLOSEST = 0.01
 """Least distance of wavelengths. [nm]"""
 
@@ -125,8 +128,11 @@ def _check_wavelengths(wavelengths: tuple[float, ...]) -> None:
             f"spectral: must be 1 to {MOST_WAVELENGTHS} wavelengths, got {len(wavelengths)}"
         )
     for number in wavelengths:
-        if not 0.0 < number < 1e6:
-            raise InputError(f"spectral: a wavelength must be greater than 0 nm, got {number:g} nm")
+        if not 0.0 < number < LONGEST:
+            raise InputError(
+                f"spectral: a wavelength must be greater than 0 and less than {LONGEST:g} nm, "
+                f"got {number:g} nm"
+            )
     for below, above in pairwise(wavelengths):
         if not above - below >= CLOSEST:
             raise InputError(

@@ -60,7 +60,8 @@ def test_daylight_is_white_to_a_camera_unless_it_keeps_its_ratios(observer):
         (COLUMNS + "450,1,1,1\n700,1,1,1\n", "must cover 400 to 700 nm, got 450 to 700 nm"),
         (COLUMNS + "400,1,1,nan\n700,1,1,1\n", "a row must be four finite numbers"),
         (COLUMNS + "400,1,1,-1\n700,1,1,1\n", "B must be at least 0"),
-        (COLUMNS + "400,0,1,1\n700,0,1,1\n", "R must be at least 0, and greater"),
+        (COLUMNS + "400,0,1,1\n700,0,1,1\n", "R must be at least 0, and greater than 1e-30"),
+        (COLUMNS + "400,1e-320,1,1\n700,1e-320,1,1\n", "R must be at least 0, and greater than"),
         (COLUMNS + "-5,1,1,1\n700,1,1,1\n", "a wavelength must be greater than 0 nm"),
     ],
 )
