@@ -33,7 +33,9 @@ def evaluate_apart(
     clear = scene.evaluate_clear(zenith, azimuth, footprint)
     if scene.cloudscape is None:
         return np.concatenate([clear, clear, np.zeros_like(clear[..., :1])], axis=2)
-    clouded, hidden = scene.evaluate_clouded(zenith, azimuth, footprint)
+    from skybake.image.clouded import evaluate_clouded
+
+    clouded, hidden = evaluate_clouded(scene, zenith, azimuth, footprint)
     return np.concatenate([clear, clouded, hidden[..., None]], axis=2)
 
 

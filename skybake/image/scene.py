@@ -282,15 +282,9 @@ class Scene:
         """
         if self.cloudscape is None:
             return self.evaluate_clear(zenith, azimuth, footprint)
-        return self.evaluate_clouded(zenith, azimuth, footprint)[0]
-
-    def evaluate_clouded(
-        self, zenith: Array, azimuth: Array, footprint: Array | float
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Pixel values with clouds, and the share of what is behind them that these hide."""
         from skybake.image.clouded import evaluate_clouded
 
-        return evaluate_clouded(self, zenith, azimuth, footprint)
+        return evaluate_clouded(self, zenith, azimuth, footprint)[0]
 
     def evaluate_clear(self, zenith: Array, azimuth: Array, footprint: Array | float) -> np.ndarray:
         """Pixel values of the sky without clouds, see `evaluate`."""
