@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from skybake.aerial.depth import Depths
 from skybake.aerial.lookup import allocate_air, fill_air
 from skybake.aerial.sight import ABOVE, BELOW, Eye, Lens, eye_of, survey
 from skybake.aerial.volume import TAPS, Extent, Volume, build_volume
@@ -19,24 +20,6 @@ Floats = npt.NDArray[np.float32]
 
 ROWS = 16
 """Rows that a thread takes at a time."""
-
-
-class Depths(NamedTuple):
-    """How far what pixels show is.
-
-    Attributes
-    ----------
-    values : ndarray of float32, shape (row, column)
-        At least 0; infinite where nothing is.
-    unit : float
-        Length of 1. [km]
-    is_planar : bool
-        Whether they are along the camera's axis rather than along rays.
-    """
-
-    values: Floats
-    unit: float
-    is_planar: bool
 
 
 class Air(NamedTuple):

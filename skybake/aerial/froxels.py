@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from skybake.aerial.air import Air, Depths, look_up, volumes_for
+from skybake.aerial.air import Air, look_up, volumes_for
+from skybake.aerial.depth import Depths
 from skybake.aerial.sight import Lens
 from skybake.image.scene import Scene
 from skybake.jit.arguments import flatten

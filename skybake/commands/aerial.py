@@ -6,6 +6,7 @@ import json
 import math
 import time
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -38,7 +39,7 @@ from skybake.commands.printing.notices import announce_kernels, notice, warn
 from skybake.errors import InputError
 
 if TYPE_CHECKING:
-    from skybake.aerial.bake import Reading, Source
+    from skybake.aerial.source import Reading, Source
     from skybake.projection.camera import Camera
 
 _SUN = ("sun_disc", "sun_size", "sun_soft", "sun_strength")
@@ -182,18 +183,25 @@ def aerial(**options: Any) -> None:
     moment = moment_from_options(context)
     where = positions(options, moment)
 
-    from skybake.aerial.bake import bake_aerial, read_source
-    from skybake.baking import late_kernels
-    from skybake.image import settings as image_settings
-    from skybake.image.scene import Scene
-    from skybake.image.sun_distance import sun_distance
-    from skybake.image.uneclipsed import check_uneclipsed
+    from skybake.aerial.source import read_source
 
-    planet = world_from_options(context)
-    check_clouds(context, planet)
-    if not options["quiet"]:
-        announce_kernels()
-    source = read_source(options["beauty"], options["depth"], _reading(options))
+    # Files are unpacked while the rest of the program is loaded.
+    with ThreadPoolExecutor(1) as thread:
+        given = options["beauty"], options["depth"], _reading(options)
+        reading = thread.submit(read_source, *given)
+
+        from skybake.aerial.bake import bake_aerial
+        from skybake.baking import late_kernels
+        from skybake.image import settings as image_settings
+        from skybake.image.scene import Scene
+        from skybake.image.sun_distance import sun_distance
+        from skybake.image.uneclipsed import check_uneclipsed
+
+        planet = world_from_options(context)
+        check_clouds(context, planet)
+        if not options["quiet"]:
+            announce_kernels()
+        source = reading.result()
     camera = _camera(options, source)
     where["altitude"] = altitude_with(camera, where["altitude"])
     try:
@@ -222,7 +230,7 @@ def aerial(**options: Any) -> None:
 
 
 def _reading(options: Mapping[str, Any]) -> Reading:
-    from skybake.aerial.bake import Reading
+    from skybake.aerial.source import Reading
     from skybake.projection.camera_file import UNITS
 
     return Reading(

@@ -215,12 +215,9 @@ def log_twilight(angle, scale):
 
     A degree is one of a `twilight_scale` of 1.
     """
-    below = min((angle - 0.5 * math.pi) / scale, TWILIGHT_END)
-    if below <= 0.0:
-        return 0.0
-    if below < TWILIGHT_ONSET:
-        return -TWILIGHT_SLOPE * below * below / (2.0 * TWILIGHT_ONSET)
-    return -TWILIGHT_SLOPE * (below - 0.5 * TWILIGHT_ONSET)
+    below = min(max((angle - 0.5 * math.pi) / scale, 0.0), TWILIGHT_END)
+    onset = min(below, TWILIGHT_ONSET)
+    return -TWILIGHT_SLOPE * (onset * onset / (2.0 * TWILIGHT_ONSET) + below - onset)
 
 
 @kernel
@@ -232,25 +229,38 @@ def sun_weights(field, mu_s, out):
     beyond `steep_from`.
     """
     angle = min(fast_acos(mu_s), field.sun_angle[-1])
+    j = find_suns(field, angle)
+    if angle > field.steep_from:
+        fill_linear_weights(field, angle, j, out)
+    else:
+        fill_cubic_weights(field, angle, j, out)
+    return j
+
+
+@kernel
+def find_suns(field, angle):
+    """First of the four nodes around a solar zenith angle."""
     j = field.sun_bin[min(int(angle * (ANGLE_BINS / math.pi)), ANGLE_BINS - 1)]
     while angle > field.sun_angle[j + 2] and j + 4 < field.sun_angle.size:
         j += 1
-    if angle > field.steep_from:
-        _fill_linear_weights(field, angle, j, out)
-        return j
+    return j
+
+
+@kernel
+def fill_cubic_weights(field, angle, j, out):
+    """Write the weights of four nodes from `j` on as of `sun_weights`, but for steep twilight."""
     xa, xb = angle - field.sun_angle[j], angle - field.sun_angle[j + 1]
     xc, xd = angle - field.sun_angle[j + 2], angle - field.sun_angle[j + 3]
-    here = fast_exp(log_twilight(angle, field.twilight)) if angle > 0.5 * math.pi else 1.0
+    here = fast_exp(log_twilight(angle, field.twilight))
     low, high = here * xa * xb, here * xc * xd
     out[0] = field.sun_factor[j, 0] * xb * high
     out[1] = field.sun_factor[j, 1] * xa * high
     out[2] = field.sun_factor[j, 2] * xd * low
     out[3] = field.sun_factor[j, 3] * xc * low
-    return j
 
 
 @kernel
-def _fill_linear_weights(field, angle, j, out):
+def fill_linear_weights(field, angle, j, out):
     """Write the weights of the two of four nodes that are on either side of a sun's position."""
     out[0] = out[1] = out[2] = out[3] = 0.0
     i = 1 if angle <= field.sun_angle[j + 2] else 2

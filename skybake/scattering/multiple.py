@@ -16,7 +16,6 @@ from skybake.scattering.field import (
     DiffuseField,
     altitude_weight,
     fill_ground_irradiance,
-    sun_weights,
 )
 from skybake.scattering.field_sums import add_orders, fill_factors, sum_degrees
 from skybake.scattering.harmonics import fill_harmonics
@@ -28,6 +27,7 @@ from skybake.scattering.polarised import (
     fill_polarised_scattering,
     fill_spin_functions,
 )
+from skybake.scattering.suns import fill_suns
 from skybake.transport.geometry import radius_at
 
 NEGLIGIBLE = 3e-4
@@ -40,8 +40,8 @@ class Scratch(NamedTuple):
 
     Attributes
     ----------
-    node, weights, cosine : ndarray, shape (ray,), (ray, 4) and (ray,)
-        Where the sun is between nodes for each ray of a fan, and in which azimuth.
+    angle, node, weights, cosine : ndarray, shape (ray,), (ray,), (ray, 4) and (ray,)
+        Of `fill_suns`.
     fourier : ndarray of float32, shape (sun, order m * wavelength)
         Sums over degrees l at the nodes of the sun's angle.
     series : ndarray of float32, shape (order m * wavelength,)
@@ -62,6 +62,7 @@ class Scratch(NamedTuple):
         Functions of `skybake.scattering.polarised`.
     """
 
+    angle: Array
     node: npt.NDArray[np.int64]
     weights: Array
     cosine: Array
@@ -87,6 +88,7 @@ def allocate_scratch(field: DiffuseField, fans: Fans) -> Scratch:
     widest = int(np.diff(fans.first).max())
     orders = field.harmonics.order + 1
     return Scratch(
+        angle=np.empty(widest),
         node=np.empty(widest, np.int64),
         weights=np.empty((widest, 4)),
         cosine=np.empty(widest),
@@ -164,8 +166,8 @@ def add_diffuse(field, radiance, peaks, scaled, fans, begin, end, samples, scrat
             t = (1.0 - share) * samples.distance[n] + share * samples.distance[n + 1]
             radius = radius_at(r, mu, t)
             mu_here = min(max((r * mu + t) / radius, -1.0), 1.0)
-            least, most = _fill_suns(
-                field, fans.rays, i, count, t, radius, mu_here, node, weights, cosine
+            least, most = fill_suns(
+                field, fans.rays, i, count, t, radius, mu_here, scratch.angle, node, weights, cosine
             )
             fill_harmonics(field.harmonics, mu_here, harmonic)
             fill_factors(harmonic, scattering, degrees, factor)
@@ -253,18 +255,3 @@ def _count_degrees(scattering):
         if needed > 0:
             return degree + 1
     return 0
-
-
-@kernel
-def _fill_suns(field, rays, first, count, t, radius, mu_here, node, weights, cosine):
-    """Find the sun between nodes at a sample, for each ray; returns the nodes first and last."""
-    least, most = field.sun_angle.size, 0
-    for q in range(count):
-        r, mu_s, nu = rays[first + q, 0], rays[first + q, 2], rays[first + q, 3]
-        mu_s_here = min(max((r * mu_s + t * nu) / radius, -1.0), 1.0)
-        sines = math.sqrt((1.0 - mu_here * mu_here) * (1.0 - mu_s_here * mu_s_here))
-        across = 1.0 if sines < 1e-12 else (nu - mu_here * mu_s_here) / sines
-        cosine[q] = min(max(across, -1.0), 1.0)
-        node[q] = sun_weights(field, mu_s_here, weights[q])
-        least, most = min(least, node[q]), max(most, node[q])
-    return least, most + 4

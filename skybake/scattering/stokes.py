@@ -12,13 +12,14 @@ from skybake.jit.kernel import kernel
 from skybake.optics.delta_m import ScaledMedium
 from skybake.optics.medium import Array
 from skybake.scattering.fans import Fans
-from skybake.scattering.field import altitude_weight, sun_weights
+from skybake.scattering.field import altitude_weight
 from skybake.scattering.spin_harmonics import (
     SpinHarmonics,
     build_spin_harmonics,
     fill_spin_harmonics,
     harmonic_count,
 )
+from skybake.scattering.suns import fill_suns
 from skybake.transport.geometry import radius_at
 
 
@@ -45,8 +46,8 @@ class StokesScratch(NamedTuple):
 
     Attributes
     ----------
-    node, weights, cosine : ndarray, shape (ray,), (ray, 4) and (ray,)
-        Where the sun is between nodes for each ray of a fan, and in which azimuth.
+    angle, node, weights, cosine : ndarray, shape (ray,), (ray,), (ray, 4) and (ray,)
+        Of `fill_suns`.
     spins : ndarray, shape (2, harmonic)
         Harmonics.
     weight, scattering : ndarray of float32, shape (wavelength,) and (3, order + 1, wavelength)
@@ -57,6 +58,7 @@ class StokesScratch(NamedTuple):
         What is scattered into E and into B.
     """
 
+    angle: Array
     node: npt.NDArray[np.int64]
     weights: Array
     cosine: Array
@@ -81,6 +83,7 @@ def allocate_stokes(polarisation: Polarisation, suns: int, fans: Fans) -> Stokes
     widest = int(np.diff(fans.first).max())
     _, _, orders, wavelengths = polarisation.source.shape
     return StokesScratch(
+        angle=np.empty(widest),
         node=np.empty(widest, np.int64),
         weights=np.empty((widest, 4)),
         cosine=np.empty(widest),
@@ -125,15 +128,9 @@ def add_stokes(field, radiance, polarisation, r_bottom, fans, begin, end, sample
             t = (1.0 - share) * samples.distance[n] + share * samples.distance[n + 1]
             radius = radius_at(r, mu, t)
             mu_here = min(max((r * mu + t) / radius, -1.0), 1.0)
-            least, most = field.sun_angle.size, 0
-            for q in range(count):
-                mu_s, nu = fans.rays[i + q, 2], fans.rays[i + q, 3]
-                mu_s_here = min(max((r * mu_s + t * nu) / radius, -1.0), 1.0)
-                sines = math.sqrt((1.0 - mu_here * mu_here) * (1.0 - mu_s_here * mu_s_here))
-                across = 1.0 if sines < 1e-12 else (nu - mu_here * mu_s_here) / sines
-                cosine[q] = min(max(across, -1.0), 1.0)
-                node[q] = sun_weights(field, mu_s_here, weights[q])
-                least, most = min(least, node[q]), max(most, node[q] + 4)
+            least, most = fill_suns(
+                field, fans.rays, i, count, t, radius, mu_here, scratch.angle, node, weights, cosine
+            )
             fill_spin_harmonics(polarisation.harmonics, mu_here, scratch.spins)
             low, u = altitude_weight(field, radius - r_bottom)
             for j in range(least, most):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import replace
@@ -17,6 +16,7 @@ from skybake.image.settings import Encoding, MapSettings, View
 from skybake.jit.workers import ALL_CPUS
 from skybake.pipeline.stages import CoarseStages, KeptStages
 from skybake.projection import Equirect, Perspective
+from skybake.studio.figures import world_key
 from skybake.studio.reader import Request
 
 KEPT_SCENES = 4
@@ -149,5 +149,4 @@ def _seen(request: Request, view: View) -> MapSettings:
 
 
 def _key(request: Request, settings: MapSettings) -> str:
-    recipe = json.dumps(request.planet.recipe, sort_keys=True, default=str)
-    return f"{recipe}\n{settings!r}"
+    return f"{world_key(request.planet)}\n{settings!r}"

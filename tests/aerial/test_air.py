@@ -5,13 +5,17 @@ import math
 import numpy as np
 import pytest
 
-from skybake.aerial.air import Depths, air_before
+from skybake.aerial.air import Air, air_before
 from skybake.aerial.compose import Behind, through_air
+from skybake.aerial.depth import Depths
 from skybake.aerial.froxels import air_by_froxels
 from skybake.aerial.sight import lens_of
+from skybake.aerial.to_space import dim_beyond
+from skybake.image.apart import evaluate_transmittance
 from skybake.optics.changes import PresetChanges
 from skybake.preset import load_preset
 from skybake.projection.camera import camera_from_angles
+from skybake.projection.gnomonic import GnomonicChart
 from tests.aerial.pictures import scene
 
 SIZE = 96, 54
@@ -218,3 +222,22 @@ def test_from_space_there_is_no_air_before_it_begins():
     light, passing = traced(made, rays(camera)[chosen], distance[chosen] * (1.0 - 1e-6))
     assert np.abs(air.light[chosen] / light - 1.0).max() < 0.01
     assert np.abs(air.passing[chosen] - passing).max() < 0.01
+
+
+@pytest.mark.parametrize(
+    ("altitude", "look", "fov"), [(0.002, 5.0, 50.0), (10.0, -2.0, 9.0), (400.0, -17.0, 20.0)]
+)
+def test_light_from_space_is_dimmed_as_the_transmittance_of_a_map_says(altitude, look, fov):
+    """Within 0.002, also in pixels that the horizon divides."""
+    made, camera = scene(20.0, altitude), camera_to(120.0, look, fov, roll=20.0)
+    shape = SIZE[::-1]
+    air = Air(np.zeros((*shape, 3), np.float32), np.full((*shape, 3), 9.0, np.float32))
+    depth = np.full(shape, np.inf, np.float32)
+    depth[:, ::5] = 3.0
+    dim_beyond(made, lens_of(camera, SIZE), Depths(depth, 1.0, False), air)
+    assert (air.passing[:, ::5] == 9.0).all()
+    chart = GnomonicChart(camera.axes, camera.half_width, camera.half_height, *SIZE)
+    expected = evaluate_transmittance(made, *chart.looks(0, SIZE[1]))
+    is_far = np.isinf(depth)
+    assert np.ptp(expected) > 0.4
+    np.testing.assert_allclose(air.passing[is_far], expected[is_far], atol=2e-3)

@@ -8,7 +8,7 @@ import click
 import pytest
 
 import skybake
-from skybake.aerial import bake
+from skybake.aerial import bake, source
 from skybake.aerial.depth import BACKGROUNDS
 from skybake.cli import main
 from skybake.colour.camera import CAMERA_WHITES
@@ -120,7 +120,7 @@ def test_choices_are_those_of_the_engine():
     assert choices.VIEWS == VIEWS
     assert choices.AIMS == AIMS
     assert choices.AERIAL_METHODS == bake.METHODS
-    assert choices.DEPTH_KINDS == bake.DEPTH_KINDS
+    assert choices.DEPTH_KINDS == source.DEPTH_KINDS
     assert choices.SKIES_BEHIND == bake.SKIES
     assert tuple(BACKGROUNDS) == choices.DEPTH_BACKGROUNDS
     assert set(choices.CAMERA_UNITS) == set(UNITS_OF_CAMERAS)

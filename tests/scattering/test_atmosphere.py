@@ -20,6 +20,7 @@ from skybake.scattering.atmosphere import (
     is_stored,
 )
 from tests.media import plain_medium
+from tests.skies import truth_atmosphere
 
 MEDIUM = plain_medium(lambda h: np.exp(-h / 8.0), [0.01, 0.05])
 
@@ -56,6 +57,13 @@ def test_stored_tables_are_the_built_ones_bit_by_bit(folder):
     assert is_stored(MEDIUM, "hillaire")
     assert_same(load(MEDIUM), built)
     assert len(list(folder.iterdir())) == 1
+
+
+def test_stored_tables_of_all_orders_are_not_built_again_where_air_has_no_matrices(monkeypatch):
+    assert len(truth_atmosphere("EARTH_A").medium.matrix) == 0
+    forget_atmospheres()
+    monkeypatch.setattr(atmosphere, "build_atmosphere", None)
+    truth_atmosphere("EARTH_A")
 
 
 def test_stored_tables_are_not_built_again(folder, monkeypatch):

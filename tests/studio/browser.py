@@ -16,15 +16,26 @@ needs_browser = pytest.mark.skipif(
     reason="needs the program chromium and the package playwright",
 )
 
-_TEXELS = """() => {
-  const { texels, width, height } = studio.live.frames.now;
-  const bytes = new Uint8Array(texels.slice().buffer);
+_AS_TEXT = """(bytes) => {
   let text = "";
   for (let at = 0; at < bytes.length; at += 8192) {
     text += String.fromCharCode(...bytes.subarray(at, at + 8192));
   }
-  return [btoa(text), width, height];
+  return btoa(text);
 }"""
+
+_TEXELS = f"""() => {{
+  const {{ texels, width, height }} = studio.live.frames.now;
+  return [({_AS_TEXT})(new Uint8Array(texels.slice().buffer)), width, height];
+}}"""
+
+_DRAWN = f"""() => {{
+  studio.views.draw();
+  const {{ gl, canvas: {{ width, height }} }} = studio.views.renderer;
+  const bytes = new Uint8Array(4 * width * height);
+  gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+  return [({_AS_TEXT})(bytes), width, height];
+}}"""
 
 
 @contextmanager
@@ -62,7 +73,7 @@ class Tab:
             self.complaints.append(message.text)
 
     def settle(self):
-        """Wait until the picture is that of the knobs."""
+        """Wait until the full picture of what the knobs are set to has been drawn."""
         self.page.wait_for_selector(SETTLED)
 
     def turn(self, knob, text):
@@ -94,6 +105,11 @@ class Tab:
         """
         text, width, height = self.page.evaluate(_TEXELS)
         return np.frombuffer(base64.b64decode(text), "<f2").reshape(height, width, 3)
+
+    def drawn(self):
+        """Draw and return what the page shows of the sky, bytes of shape (row, column, channel)."""
+        text, width, height = self.page.evaluate(_DRAWN)
+        return np.frombuffer(base64.b64decode(text), np.uint8).reshape(height, width, 4)[::-1]
 
     def scale(self):
         return self.page.evaluate("studio.live.frames.now.scale")

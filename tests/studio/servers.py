@@ -3,6 +3,7 @@
 import http.client
 import json
 import signal
+import time
 from contextlib import contextmanager
 from urllib.parse import urlsplit
 
@@ -11,6 +12,40 @@ import numpy as np
 from tests.cli.runs import start
 
 TOKEN = "a-token-of-the-tests"  # noqa: S105
+
+RELEASED, STOPPED = "released", "stopped"
+HOLDING = f"""
+from pathlib import Path
+from time import sleep
+
+from skybake.cli import run
+from skybake.errors import CancelledError
+from skybake.preset import load_preset
+from skybake.studio import scenes, views
+
+released = Path({RELEASED!r}).absolute()
+earth = load_preset("earth").recipe
+solve = views.solve
+
+def held(scene, stage):
+    if scene.planet.recipe != earth:
+        stage(scenes.SOLVING, None)
+        while not released.exists():
+            try:
+                scene.workers.check()
+            except CancelledError:
+                Path({STOPPED!r}).touch()
+                raise
+            sleep(0.01)
+    solve(scene, stage)
+
+views.solve = held
+run()
+"""
+"""A server that solves Earth, and all other worlds once the file `RELEASED` is in its folder.
+
+The file `STOPPED` is there once such a solution was cancelled.
+"""
 
 
 class Server:
@@ -44,18 +79,27 @@ class Server:
 
 
 @contextmanager
-def serving(folder, *arguments, port=0, **environment):
-    """Run a server in a folder as long as the block lasts."""
+def serving(folder, *arguments, port=0, **keywords):
+    """Run a server in a folder as long as the block lasts; `keywords` are those of `start`."""
     process = start(
         *("studio", "--no-browser", "--port", port, *arguments),
         cwd=folder,
-        env={"SKYBAKE_STUDIO_TOKEN": TOKEN} | environment,
+        env={"SKYBAKE_STUDIO_TOKEN": TOKEN},
+        **keywords,
     )
     try:
         yield Server(process, process.stdout.readline().strip())
     finally:
         process.kill()
         process.communicate()
+
+
+def wait_until(condition):
+    """Wait for what another process does."""
+    end = time.monotonic() + 240.0
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.02)
 
 
 def read_frame(message):
