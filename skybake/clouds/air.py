@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from skybake.clouds.directions import sun_vector
+from skybake.clouds.quadrature import double_gauss
 from skybake.jit.kept import Kept
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.medium import Array, Medium
@@ -29,6 +31,15 @@ KEPT = 2
 
 BRIGHT = 0.8
 """Albedo of the ground from which, with the true one, the light over any ground is derived."""
+
+SPHERE = 7
+"""Order of the directions over which light is summed for that."""
+
+THINNEST = 1e-9
+"""Optical depth of air that is told from none, and light that is told from darkness."""
+
+LOWEST_SUN = math.radians(-4.0)
+"""Below which the sun counts as there: the ratio of two lights in the dark tells nothing."""
 
 
 class Light(NamedTuple):
@@ -137,39 +148,43 @@ class ClearAir:
             out[i] = weight @ through / weight.sum()
         return out
 
-    def brightening(self, albedo: Array) -> Array:
-        """Factor of the light of `over_bright` by which a ground of another albedo adds to the air.
+    def depth_above(self, altitude: float) -> Array:
+        """Vertical optical depth of the air above an altitude, shape (wavelength,)."""
+        through = self.sunlight(np.array([altitude]), 1.0)[0]
+        depth: Array = -np.log(np.clip(through, THINNEST, 1.0 - THINNEST))
+        return depth
+
+    def brightening(self, reflectance: Array, altitude: float, sun: Array) -> Array:
+        """Factor of the light of `over_bright` by which a layer adds to the light of the air.
 
         Parameters
         ----------
-        albedo : ndarray of float64, shape (wavelength,)
-            Of what takes the ground's place.
+        reflectance : ndarray of float64, shape (wavelength,)
+            Of a layer and what is beneath, for light that the air above scatters, see
+            `Quadrature.flux_scattered`.
+        altitude : float
+            Of its top. [km]
+        sun : ndarray of float64, shape (3,)
+            Toward the sun.
 
         Notes
         -----
-        Light over a ground of albedo A is L0 + c A / (1 - s A), where s is what the air returns
-        of light from below; two albedos tell s by the irradiance E0 / (1 - s A) of the ground.
+        What goes up at the top is what the layer reflects of all that comes down, of which a part
+        is the factor's own: L0 + x L1 for both, over the ground and over a bright one. What of it
+        lights the air counts: clouds reflect a low sun's light to where its way is long.
         """
-        down, more = self._irradiances
-        returned = (more - down) / np.maximum(more * BRIGHT - down * self.albedo, 1e-300)
-
-        def series(value: Array | float) -> Array:
-            return np.asarray(value / (1.0 - returned * value), dtype=float)
-
-        base = series(self.albedo)
-        change: Array = (series(albedo) - base) / np.maximum(series(BRIGHT) - base, 1e-12)
+        low = math.asin(float(np.clip(sun[2], -1.0, 1.0)))
+        sun = sun_vector(math.atan2(sun[0], sun[1]), max(low, LOWEST_SUN))
+        quadrature = double_gauss(SPHERE, 0.0)
+        own = np.add(*self.light_at(altitude, -quadrature.direction, sun))
+        more = self.over_bright(altitude, -quadrature.direction, sun)
+        down = [quadrature.flux(each[quadrature.downward]) for each in (own, more)]
+        depth = self.depth_above(altitude)
+        up = [quadrature.flux_scattered(each[quadrature.upward], depth) for each in (own, more)]
+        beam = max(float(sun[2]), 0.0) * self.sunlight(np.array([altitude]), float(sun[2]))[0]
+        lacking = reflectance * (beam + down[0]) - up[0]
+        change: Array = lacking / np.maximum(up[1] - reflectance * down[1], 1e-300)
         return np.where(BRIGHT - self.albedo > 1e-3, change, 0.0)
-
-    @cached_property
-    def _irradiances(self) -> tuple[Array, Array]:
-        """Of the ground under one light, where it is as it is and where it is bright."""
-        dark, bright = self._grounds
-        sun = dark.field.sun_angle
-        noon = int(np.argmin(np.abs(sun - math.pi / 3.0)))
-        count = self.albedo.size
-        beam = 0.5 * self.sunlight(np.zeros(1), 0.5)[0]
-        down, more = (each.field.ground[noon, :count] + beam for each in (dark, bright))
-        return down, more
 
     def over_bright(self, altitude: float, directions: Array, sun: Array) -> Array:
         """Light that a ground of albedo `BRIGHT` would add, shape (n, wavelength). [sr⁻¹]"""

@@ -127,7 +127,7 @@ def build_table(
     weights : ndarray of float64, shape (wavelength, channel)
         Of the channels.
     reflectance : ndarray of float64, shape (wavelength,)
-        Of clouds and ground, seen from above.
+        Of clouds and ground, as of `ClearAir.brightening`.
     """
     begin, end, hits = shadowed_stretch(altitude, directions, air.radius, top)
     distance = stretch_ends(begin, end)
@@ -147,7 +147,7 @@ def build_table(
         lit = _sunlit_ground(air, altitude, directions[hits], end[hits], sun)
         sunlit[hits] = (lit * spans.transmittance[hits, -1]) @ weights
     sunlit = np.minimum(sunlit, ground)
-    change = air.brightening(reflectance)
+    change = air.brightening(reflectance, top, sun)
     glow = np.zeros_like(diffuse)
     if altitude > top or not hits.all():
         glow = (air.over_bright_spans(altitude, directions, distance, sun) * change) @ weights

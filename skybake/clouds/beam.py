@@ -9,9 +9,6 @@ import numpy as np
 from skybake.jit.kernel import kernel
 from skybake.transport.exponential import fast_exp32
 
-LEAST_SLOPE = 0.008
-"""Of the beam, below which it would cross more than a hundred tiles."""
-
 
 @kernel
 def fill_beam(extinction, spacing, x, y, z, ray, met, mean, leaving):
@@ -55,15 +52,15 @@ def fill_beam(extinction, spacing, x, y, z, ray, met, mean, leaving):
                 here[j, i] = 0.0
         for part in range(parts):
             along = q + (part + 0.5) / parts
-            _gather(extinction[k], along * along_x, along * along_y, met)
+            gather_plane(extinction[k], along * along_x, along * along_y, met)
             for j in range(rows):
                 for i in range(columns):
                     depth = met[j, i] * step
                     passes = fast_exp32(-depth)
                     met[j, i] = share * ray[j, i] * mean_passing(depth, passes)
                     ray[j, i] *= passes
-            _scatter(met, along * along_x, along * along_y, here)
-    _scatter(ray, levels * along_x, levels * along_y, leaving)
+            scatter_plane(met, along * along_x, along * along_y, here)
+    scatter_plane(ray, levels * along_x, levels * along_y, leaving)
 
 
 @kernel
@@ -75,7 +72,7 @@ def mean_passing(depth, passes):
 
 
 @kernel
-def _gather(plane, shift_x, shift_y, out):
+def gather_plane(plane, shift_x, shift_y, out):
     """Write a plane at places that are shifted by so many voxels, bilinear and periodic."""
     rows, columns = out.shape
     whole_x, whole_y = math.floor(shift_x), math.floor(shift_y)
@@ -94,8 +91,8 @@ def _gather(plane, shift_x, shift_y, out):
 
 
 @kernel
-def _scatter(plane, shift_x, shift_y, out):
-    """Add to places that are shifted by so many voxels what `_gather` would weigh equally."""
+def scatter_plane(plane, shift_x, shift_y, out):
+    """Add to places that are shifted by so many voxels what `gather_plane` would weigh equally."""
     rows, columns = out.shape
     whole_x, whole_y = math.floor(shift_x), math.floor(shift_y)
     u, v = np.float32(shift_x - whole_x), np.float32(shift_y - whole_y)

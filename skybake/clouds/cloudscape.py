@@ -137,8 +137,8 @@ class Cloudscape:
 
     @property
     def reflectance(self) -> Array:
-        """Of clouds and ground, seen from above, shape (wavelength,)."""
-        return channels_to_wavelengths(self.solved[0].reflectance, self.weights)
+        """Of clouds and ground, for light that the air above scatters, shape (wavelength,)."""
+        return channels_to_wavelengths(self.solved[0].reflectance.scattered, self.weights)
 
     def table(self, directions: Array) -> AirTable:
         """Light of clear air along rays, see `build_table`."""

@@ -47,8 +47,10 @@ class Diffuse(NamedTuple):
     ----------
     moments : ndarray of float32, shape (channel, z, y, harmonic, x)
         Of the radiance in each voxel.
-    up, down : ndarray of float64, shape (channel,)
-        Mean irradiances of horizontal planes: upward at the top, and downward at the base.
+    up : ndarray of float64, shape (direction, channel)
+        Mean radiance at the top along the upward directions.
+    down : ndarray of float64, shape (channel,)
+        Mean irradiance of a horizontal plane at the base.
     passes : int
         How many it took, those on merged voxels included.
     known : tuple of Known
@@ -98,7 +100,8 @@ def solve_diffuse(
     harmonics = (scattering.order + 1) ** 2
     levels, rows, columns = voxels.extinction.shape
     moments = np.empty((channels, levels, rows, harmonics, columns), np.float32)
-    up, down, passes = np.empty(channels), np.empty(channels), np.zeros(channels, int)
+    down, passes = np.empty(channels), np.zeros(channels, int)
+    up = np.empty((len(scattering.quadrature.weight) // 2, channels))
 
     known: list[Known | None] = [None] * channels
 
@@ -106,7 +109,7 @@ def solve_diffuse(
         light = Entering(*(part[channel : channel + 1] for part in entering))
         made = Passes(voxels, scattering, light)
         solved, passes[channel] = _solve_channel(voxels, scattering, light, made, like, tolerance)
-        up[channel], down[channel] = made.finish(solved.moments, moments[channel])
+        up[:, channel], down[channel] = made.finish(solved.moments, moments[channel])
         known[channel] = solved
 
     middle = channels // 2

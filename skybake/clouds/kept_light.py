@@ -10,10 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.clouds.air import ClearAir
-from skybake.clouds.layer import SolvedLayer
+from skybake.clouds.layer import Reflectance, SolvedLayer
 from skybake.clouds.light import LayerLight
 from skybake.clouds.unlit import Layer
-from skybake.jit.cache import CLOUD_LIGHT_PREFIX
+from skybake.jit.cache import CLOUD_LIGHT_PREFIX, source_hash
 from skybake.jit.tables import LARGEST_LIGHTS, read_tables, write_tables
 from skybake.optics.medium import Array
 from skybake.scattering.atmosphere import atmosphere_key
@@ -22,7 +22,8 @@ Floats = npt.NDArray[np.float32]
 
 _LIGHT = "light."
 _OF_AIR = ("lit", "through", "distance")
-_OF_LAYER = ("leaving", "mean_radiance", "down", "down_clear", "reflectance")
+_OF_LAYER = ("leaving", "mean_radiance", "down", "down_clear")
+_REFLECTANCE = "reflectance."
 
 
 class KeptLight(NamedTuple):
@@ -60,7 +61,7 @@ def keep_light(key: str, light: KeptLight) -> None:
 def light_key(
     layers: Sequence[Layer], air: ClearAir, altitude: float, sun: Array, weights: Array
 ) -> str:
-    """Name the light of layers and of the air by all that it depends on but the code.
+    """Name the light of layers and of the air by all that it depends on.
 
     Parameters
     ----------
@@ -70,7 +71,7 @@ def light_key(
         As of `skybake.clouds.cloudscape.Cloudscape`.
     """
     given: list[Any] = [atmosphere_key(air.atmosphere.medium, air.method), air.sun_radius]
-    given += [altitude, sun, weights, np.__version__]
+    given += [altitude, sun, weights, source_hash("clouds"), np.__version__]
     for layer in layers:
         grid = layer.grid
         given += [layer.order, grid.base, grid.spacing, grid.extinction]
@@ -90,6 +91,8 @@ def _to_arrays(light: KeptLight) -> dict[str, Any]:
     for number, layer in enumerate(light.layers):
         for name, value in layer.light._asdict().items():
             arrays[f"{number}.{_LIGHT}{name}"] = value
+        for name, value in layer.reflectance._asdict().items():
+            arrays[f"{number}.{_REFLECTANCE}{name}"] = value
         for name in _OF_LAYER:
             arrays[f"{number}.{name}"] = getattr(layer, name)
     return arrays
@@ -104,6 +107,8 @@ def _from_arrays(arrays: dict[str, Any]) -> KeptLight:
             for name in LayerLight._fields
             for value in [arrays[f"{number}.{_LIGHT}{name}"]]
         }
-        parts = {name: arrays[f"{number}.{name}"] for name in _OF_LAYER}
+        parts: dict[str, Any] = {name: arrays[f"{number}.{name}"] for name in _OF_LAYER}
+        reflects = (arrays[f"{number}.{_REFLECTANCE}{name}"] for name in Reflectance._fields)
+        parts["reflectance"] = Reflectance(*reflects)
         solved.append(SolvedLayer(LayerLight(**light), **parts))
     return KeptLight(solved, *(arrays[name] for name in _OF_AIR))

@@ -5,16 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from skybake.clouds.air import ClearAir, Light
-from skybake.clouds.beam import LEAST_SLOPE, fill_beam
+from skybake.clouds.beam import fill_beam
+from skybake.clouds.curved_beam import fill_curved_beam
 from skybake.clouds.diffuse import Diffuse, Known, solve_diffuse
 from skybake.clouds.harmonics import degrees
 from skybake.clouds.light import LayerLight, half_words
-from skybake.clouds.merging import merge_pairs
 from skybake.clouds.particles import Particles
 from skybake.clouds.quadrature import Quadrature, cell_samples, double_gauss
 from skybake.clouds.transfer import Entering, Scattering, Voxels
@@ -23,12 +24,8 @@ from skybake.optics.medium import Array
 
 Floats = npt.NDArray[np.float32]
 
-SKETCH = 2
-"""How often voxels are merged by two for a first sight of what a layer reflects."""
-
-SKETCH_LEAST = 8
-
-MOST_REFLECTED = 0.98
+FLAT = math.sin(math.radians(12.0))
+"""Of a sun, above which the planet's curvature does not matter to its beam."""
 
 HEIGHTS = 3
 """At which the light of clear air within a layer is told, from its base to its top."""
@@ -65,6 +62,23 @@ class Grid:
         return self.base + middles
 
 
+class Reflectance(NamedTuple):
+    """What a layer and all beneath it reflect of the light that comes down, by channel.
+
+    Attributes
+    ----------
+    flux : ndarray of float64, shape (channel,)
+        All of it.
+    scattered : ndarray of float64, shape (channel,)
+        As if all directions were as bright as those are on average whose light the air above
+        scatters, see `Quadrature.flux_scattered`: clouds under a low sun are brightest where they
+        are seen from beside. May exceed 1.
+    """
+
+    flux: Array
+    scattered: Array
+
+
 @dataclass(frozen=True, eq=False)
 class SolvedLayer:
     """A layer with its light.
@@ -81,7 +95,7 @@ class SolvedLayer:
         Diffuse irradiance of a horizontal plane at the base.
     down_clear : ndarray of float64, shape (sun, channel)
         What the sky would bring there without clouds.
-    reflectance : ndarray of float64, shape (channel,)
+    reflectance : Reflectance
         Of the layer and what is beneath, seen from above.
     """
 
@@ -90,7 +104,7 @@ class SolvedLayer:
     mean_radiance: Array
     down: Array
     down_clear: Array
-    reflectance: Array
+    reflectance: Reflectance
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +132,7 @@ def solve_layer(
     suns: Array,
     own: int,
     around: Surroundings,
-    reflectance: Array,
+    reflectance: Reflectance,
     workers: Workers,
 ) -> SolvedLayer:
     """Solve for the light of a layer under several heights of the sun.
@@ -140,8 +154,8 @@ def solve_layer(
         Which of them stands over the observer: it is solved for first, and most exactly.
     around : Surroundings
         Other layers.
-    reflectance : ndarray of float64, shape (channel,)
-        Of this layer and what is beneath, see `reflectance_of`.
+    reflectance : Reflectance
+        Of this layer and what is beneath, see `skybake.clouds.reflectance.reflectance_of`.
     workers : Workers
         Threads that do the work.
     """
@@ -156,8 +170,8 @@ def solve_layer(
     known: dict[int, tuple[Known, ...]] = {}
     for s in [*range(own, len(suns)), *range(own - 1, -1, -1)]:
         sun = suns[s]
-        voxels, leaving[s] = shine(grid, particles.fraction, sun)
-        entering = enter(grid, quadrature, turn, air, weights, sun, around, reflectance)
+        voxels, leaving[s] = shine(grid, air.radius, particles.fraction, sun)
+        entering = enter(grid, quadrature, turn, air, weights, sun, around, reflectance.scattered)
         scattering = Scattering(particles.order, quadrature, particles.moments, sun)
         near = known.get(s - 1) if s > own else known.get(s + 1)
         diffuse = solve_diffuse(voxels, scattering, entering, workers, near)
@@ -192,7 +206,7 @@ def directions_of(particles: Particles, sun: Array) -> tuple[Quadrature, float]:
     return double_gauss(particles.order, turn), turn
 
 
-def shine(grid: Grid, fraction: float, sun: Array) -> tuple[Voxels, Floats]:
+def shine(grid: Grid, radius: float, fraction: float, sun: Array) -> tuple[Voxels, Floats]:
     """Send the sun's beam through a layer; return its voxels and what leaves, shape (y, x).
 
     Without a sun nothing is in its shadow.
@@ -204,11 +218,15 @@ def shine(grid: Grid, fraction: float, sun: Array) -> tuple[Voxels, Floats]:
     mean = np.empty_like(extinction)
     leaving = np.empty(extinction.shape[1:], np.float32)
     ray, met = np.empty_like(leaving), np.empty_like(leaving)
-    slope = math.copysign(max(abs(sun[2]), LEAST_SLOPE), sun[2])
-    fill_beam(
-        extinction, grid.spacing, float(sun[0]), float(sun[1]), slope, ray, met, mean, leaving
-    )
-    return Voxels(extinction, grid.spacing, mean, float(leaving.mean())), leaving
+    toward = [float(each) for each in sun]
+    received = ray, met, mean, leaving
+    if toward[2] > FLAT:
+        fill_beam(extinction, grid.spacing, *toward, *received)
+        beneath = float(leaving.mean())
+    else:
+        around = radius + grid.base
+        beneath = fill_curved_beam(extinction, grid.spacing, around, *toward, *received)
+    return Voxels(extinction, grid.spacing, mean, beneath), leaving
 
 
 def fill_moments(diffuse: Diffuse, out: npt.NDArray[np.uint16]) -> None:
@@ -236,7 +254,8 @@ def enter(
     grid, quadrature, turn, air, weights, sun, around
         As of `solve_layer`.
     reflectance : ndarray of float64, shape (channel,) or None
-        Of the layer and what is beneath, by which the sky above is brighter than over the ground.
+        `Reflectance.scattered` of the layer, by which the sky above is brighter than over the
+        ground.
     """
 
     def mean_light(altitude: float, hemisphere: slice) -> Light:
@@ -262,7 +281,7 @@ def enter(
 
         albedo = channels_to_wavelengths(reflectance, weights)
         more = _mean_in_cells(quadrature, turn, quadrature.downward, glow)
-        sky = sky + air.brightening(albedo) * more
+        sky = sky + air.brightening(albedo, grid.top, sun) * more
     below = Light(*clear[0, 1])
     down = quadrature.flux(clear[0, 0].sum(axis=0) @ weights)
     slope = max(float(sun[2]), 0.0)
@@ -293,7 +312,7 @@ def channels_to_wavelengths(values: Array, weights: Array) -> Array:
     share = np.abs(weights)
     total = share.sum(axis=1, keepdims=True)
     spread: Array = (share / np.maximum(total, 1e-300)) @ values
-    return np.clip(spread, 0.0, MOST_REFLECTED)
+    return spread
 
 
 def _mean_in_cells(
@@ -309,42 +328,3 @@ def _mean_in_cells(
     flux = np.tensordot(cells / cells.sum() * math.pi, mean, axes=1)
     coarse = quadrature.flux(mean)
     return mean * (flux / np.where(coarse == 0.0, 1.0, coarse))
-
-
-def reflectance_of(
-    grid: Grid,
-    particles: Particles,
-    air: ClearAir,
-    weights: Array,
-    sun: Array,
-    ground: Array | None,
-    workers: Workers,
-) -> Array:
-    """Flux up over flux down at the top of a layer, on merged voxels, shape (channel,).
-
-    Parameters
-    ----------
-    grid, particles, air, weights, workers
-        As of `solve_layer`.
-    sun : ndarray of float64, shape (3,)
-        Toward the sun.
-    ground : ndarray of float64, shape (channel,) or None
-        As of `Surroundings`.
-    """
-    extinction, spacing = grid.extinction, grid.spacing
-    for _ in range(SKETCH):
-        if min(extinction.shape[1:]) < SKETCH_LEAST or any(n % 2 for n in extinction.shape[1:]):
-            break
-        extinction, spacing = merge_pairs(extinction), 2.0 * spacing
-    sketch = Grid(extinction, spacing, grid.base)
-    quadrature, turn = directions_of(particles, sun)
-    voxels, _ = shine(sketch, particles.fraction, sun)
-    channels = weights.shape[1]
-    around = Surroundings(np.ones(channels), np.ones(channels), ground)
-    entering = enter(sketch, quadrature, turn, air, weights, sun, around, None)
-    scattering = Scattering(particles.order, quadrature, particles.moments, sun)
-    diffuse = solve_diffuse(voxels, scattering, entering, workers)
-    beam = air.sunlight(np.array([grid.top]), float(sun[2])) @ weights
-    down = quadrature.flux(entering.above.T) + max(float(sun[2]), 0.0) * beam[0]
-    ratio: Array = np.clip(diffuse.up / np.maximum(down, 1e-300), 0.0, MOST_REFLECTED)
-    return ratio

@@ -246,6 +246,14 @@ def fill_march(
             depth += extinction * step
             at += step
             if passes < OPAQUE:
+                if due > 0.0:
+                    # The light of the last steps is brighter or darker than where the rest began.
+                    _add(scratch.source, 0.5 * due, seen[n])
+                    to_eye = depth - 0.5 * extinction * step
+                    fill_source(
+                        field, light, marching, place, x, y, h, detail, erosion, to_eye, scratch
+                    )
+                    due *= 0.5
                 # What is not followed is as bright as what is.
                 share = 1.0 / (1.0 - passes)
                 passes = 0.0

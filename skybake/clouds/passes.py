@@ -20,6 +20,7 @@ from skybake.clouds.mixing import Mixing
 from skybake.clouds.ordinates import Sweep, allocate_sweep, sweep
 from skybake.clouds.transfer import Entering, Floats, Scattering, Voxels
 from skybake.jit.arguments import Flat, flatten
+from skybake.optics.medium import Array
 
 ACROSS = 0.3
 """Of a voxel, by which a ray may move farther than one before its way is divided in parts."""
@@ -71,15 +72,24 @@ class Passes:
             mixing.step(known, new)
         return known, most - 1
 
-    def finish(self, known: Floats, out: Floats) -> tuple[float, float]:
-        """Write the moments of all voxels, (z, y, harmonic, x); return the fluxes up and down."""
+    def finish(self, known: Floats, out: Floats) -> tuple[Array, float]:
+        """Write the moments of all voxels, (z, y, harmonic, x).
+
+        Returns
+        -------
+        up : ndarray of float64, shape (direction,)
+            Mean radiance that leaves the top.
+        down : float
+            Irradiance of a horizontal plane at the base.
+        """
         before = np.zeros_like(out)
         put_moments(self._cloudy, known, before)
         # In chunks of a row these are moments of cells.
-        return self._advance(self._all, before.reshape(-1), out.reshape(-1))
+        down = self._advance(self._all, before.reshape(-1), out.reshape(-1))
+        return self._radiance.mean(axis=1, dtype=float), down
 
-    def _advance(self, cells: Flat, known: Floats, new: Floats) -> tuple[float, float]:
-        """Write the moments that follow from the known ones; return the fluxes."""
+    def _advance(self, cells: Flat, known: Floats, new: Floats) -> float:
+        """Write the moments that follow from the known ones; return the flux down at the base."""
         entering, quadrature = self._entering, self._quadrature
         new[...] = 0.0
         given = flatten(known), flatten(new)
@@ -94,8 +104,7 @@ class Passes:
         below = share * entering.below[0] + lit * entering.below_lit[0]
         self._radiance[...] = below[:, None]
         self._sweep(cells, 1, *given)
-        up = float(quadrature.flux(self._radiance.mean(axis=1, dtype=float)))
-        return up, down
+        return down
 
     def _sweep(self, cells: Flat, side: int, known: Flat, new: Flat) -> None:
         air = self._air[side]

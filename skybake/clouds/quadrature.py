@@ -48,6 +48,23 @@ class Quadrature(NamedTuple):
         flux: Array = np.tensordot(weight, radiance, axes=1)
         return flux
 
+    def flux_scattered(self, radiance: Array, depth: Array) -> Array:
+        """Irradiance of a level plane by equal radiances that air scatters as much of.
+
+        Parameters
+        ----------
+        radiance : ndarray of float64, shape (direction, channel)
+            Of one hemisphere.
+        depth : ndarray of float64, shape (channel,)
+            Vertical optical depth of the air that light comes into. Of what is nearly level it
+            scatters more.
+        """
+        half = len(self.weight) // 2
+        slope = np.abs(self.direction[:half, 2])[:, None]
+        weight = self.weight[:half, None] * slope * -np.expm1(-depth / slope)
+        flux: Array = math.pi * (weight * radiance).sum(axis=0) / weight.sum(axis=0)
+        return flux
+
 
 def double_gauss(order: int, turn: float) -> Quadrature:
     """Directions that integrate harmonics up to an order, in each hemisphere by itself.

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from skybake.clouds.air import ClearAir
-from skybake.clouds.layer import SolvedLayer, Surroundings, reflectance_of, solve_layer
+from skybake.clouds.layer import Reflectance, SolvedLayer, Surroundings, solve_layer
 from skybake.clouds.particles import divide_phase
+from skybake.clouds.reflectance import reflectance_of
 from skybake.clouds.suns import suns_over
 from skybake.clouds.unlit import Layer
 from skybake.jit.workers import Workers
@@ -35,17 +36,16 @@ def solve_layers(
         As of `skybake.clouds.cloudscape.Cloudscape`.
     """
     particles = [divide_phase(each.phase, each.middle, each.order) for each in layers]
-    reflects: list[Array] = []
+    reflects: list[Reflectance] = []
     for layer, particle in zip(reversed(layers), reversed(particles), strict=True):
-        beneath = reflects[-1] if reflects else None
+        beneath = reflects[-1].flux if reflects else None
         above = air.from_above
-        ratio = reflectance_of(layer.grid, particle, above, weights, sun, beneath, workers)
-        reflects.append(ratio)
+        reflects.append(reflectance_of(layer.grid, particle, above, weights, sun, beneath, workers))
     reflects.reverse()
     out: list[SolvedLayer] = []
     sun_share = sky_ratio = np.ones(weights.shape[1])
     for k, (layer, particle) in enumerate(zip(layers, particles, strict=True)):
-        ground = reflects[k + 1] if k + 1 < len(reflects) else None
+        ground = reflects[k + 1].flux if k + 1 < len(reflects) else None
         around = Surroundings(sun_share, sky_ratio, ground)
         suns = suns_over(sun, air.radius, altitude, layer.field.top)
         own = int(np.argmin(np.abs(suns[:, 2] - sun[2])))

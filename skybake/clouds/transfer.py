@@ -25,7 +25,7 @@ class Voxels(NamedTuple):
     beam : ndarray of float32, shape (z, y, x)
         Mean over a voxel of a beam of the sun that enters with 1.
     leaving : float
-        Mean of that beam where it leaves the layer.
+        Mean of that beam beneath the layer.
     """
 
     extinction: Floats

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from skybake.clouds.air import GROUNDED, ClearAir, Light, Spans
+from skybake.clouds.air import GROUNDED, THINNEST, ClearAir, Light, Spans
 from skybake.night.air import lines_xyz
 from skybake.night.airglow import Layer, airglow_layers, path_through
 from skybake.night.city import over_two_grounds
@@ -145,6 +145,14 @@ class GlowAir(ClearAir):
         """Return that there is none, shape (altitude, 3)."""
         return np.zeros((altitudes.size, 3))
 
+    def depth_above(self, altitude: float) -> Array:
+        """Vertical optical depth of the air above an altitude for its light, shape (3,)."""
+        radius = self.radius + max(altitude, GROUNDED)
+        passing = transmittance_to_space(self.atmosphere, radius, np.ones(1))[0]
+        share = passing[: len(self.colours)] @ self.colours / self.colours.sum(axis=0)
+        depth: Array = -np.log(np.clip(share, THINNEST, 1.0 - THINNEST))
+        return depth
+
     def over_bright(self, altitude: float, directions: Array, sun: Array) -> Array:
         """Light that a ground of albedo `BRIGHT` would add, shape (n, 3)."""
         mu, back = np.unique(directions[:, 2], return_inverse=True)
@@ -168,10 +176,6 @@ class GlowAir(ClearAir):
     @cached_property
     def _bright(self) -> list[_Scattered]:
         return self._scattered_over(self._grounds[1])
-
-    @cached_property
-    def _irradiances(self) -> tuple[Array, Array]:
-        return _sum_on_ground(self._natural), _sum_on_ground(self._bright)
 
     def _scattered_over(self, atmosphere: Atmosphere) -> list[_Scattered]:
         """Return what an atmosphere scatters of the lights above it."""

@@ -128,7 +128,7 @@ def check_fluxes(folder, rows):
         assert through == pytest.approx(expected, rel=0.015)
         # Of the first of all suns.
         assert len(solved.light.sun_mu) == 1
-        assert through + solved.reflectance[0] == pytest.approx(1.0, abs=1e-3)
+        assert through + solved.reflectance.flux[0] == pytest.approx(1.0, abs=1e-3)
 
 
 def fluxes():

@@ -157,9 +157,9 @@ def hemisphere(rays):
     return directions, math.pi**2 / 2.0 * weight * np.sin(zenith) * np.cos(zenith)
 
 
-@pytest.mark.parametrize(("sun", "most"), [(60.0, 0.03), (10.0, 0.035), (2.0, 0.03)])
+@pytest.mark.parametrize(("sun", "most"), [(60.0, 0.02), (10.0, 0.02), (2.0, 0.025)])
 def test_an_overcast_brings_the_ground_the_light_of_a_monte_carlo_program(tmp_path, sun, most):
-    """The target is 3 %; at 10 deg and 550 nm it is 3.3 %, with a noise of 0.5 %."""
+    """The target is 3 %. Noise is up to 0.7 %."""
     rows = cloud_table("cloud_irradiance_STRATUS_TAU8")
     rows = rows[(rows["sun_elevation_deg"] == sun) & (rows["altitude_km"] < 1.0)]
     planet = overcast(tmp_path)

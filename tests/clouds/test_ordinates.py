@@ -48,6 +48,15 @@ def solve(extinction, sun, order, entering, spacing=SPACING):
     return solve_diffuse(voxels, scattering, entering(quadrature), Workers(1)), voxels
 
 
+def flux_up(diffuse):
+    """Irradiance by the first channel's light at the top."""
+    for order in (2, 3, 4, 5, 7):
+        quadrature = double_gauss(order, 0.0)
+        if len(diffuse.up) == len(quadrature.weight) // 2:
+            return quadrature.flux(diffuse.up)[0]
+    raise AssertionError(diffuse.up.shape)
+
+
 def no_air(none):
     nothing = np.zeros((1, 2, 2, none.shape[1]))
     return nothing, nothing
@@ -134,7 +143,7 @@ def test_what_enters_broken_clouds_leaves_them(order, elevation):
     sun = toward(math.radians(elevation))
     extinction = broken_clouds()
     diffuse, voxels = solve(extinction, sun, order, in_the_sun(len(extinction)))
-    out = diffuse.up[0] + diffuse.down[0] + sun[2] * voxels.leaving
+    out = flux_up(diffuse) + diffuse.down[0] + sun[2] * voxels.leaving
     assert out == pytest.approx(sun[2], rel=1e-3)
 
 
@@ -145,7 +154,7 @@ def test_many_voxels_keep_as_much_light_as_few():
     extinction[2:14, 10:60, 10:60] = 80.0
     diffuse, voxels = solve(extinction, sun, 2, in_the_sun(len(extinction)))
     assert extinction.size >= LARGE
-    out = diffuse.up[0] + diffuse.down[0] + sun[2] * voxels.leaving
+    out = flux_up(diffuse) + diffuse.down[0] + sun[2] * voxels.leaving
     assert out == pytest.approx(sun[2], rel=1e-3)
 
 
@@ -158,7 +167,7 @@ def test_clouds_in_a_white_furnace_are_invisible(order):
     moments = diffuse.moments[0]
     np.testing.assert_allclose(moments[:, :, 0], 4.0 * math.pi, rtol=2e-3)
     np.testing.assert_allclose(moments[:, :, 1:], 0.0, atol=2e-2)
-    assert diffuse.up[0] == pytest.approx(math.pi, rel=1e-3)
+    assert flux_up(diffuse) == pytest.approx(math.pi, rel=1e-3)
     assert diffuse.down[0] == pytest.approx(math.pi, rel=1e-3)
 
 
@@ -176,7 +185,7 @@ def test_light_turns_with_the_sun(bearing):
     deck = np.full((40, 1, 1), 4.0, np.float32)
     spacing = np.array([0.025, 1.0, 1.0])
     fluxes = [
-        solve(deck, toward(0.6, math.radians(each)), 3, in_the_sun(40), spacing)[0].up[0]
+        flux_up(solve(deck, toward(0.6, math.radians(each)), 3, in_the_sun(40), spacing)[0])
         for each in (10.0, 10.0 + bearing)
     ]
     assert fluxes[1] == pytest.approx(fluxes[0], rel=5e-3)
