@@ -251,7 +251,18 @@ def fill_march(
                     _add(scratch.source, 0.5 * due, seen[n])
                     to_eye = depth - 0.5 * extinction * step
                     fill_source(
-                        field, light, marching, place, x, y, h, detail, erosion, to_eye, scratch
+                        field,
+                        light,
+                        marching,
+                        place,
+                        x,
+                        y,
+                        h,
+                        blur,
+                        detail,
+                        erosion,
+                        to_eye,
+                        scratch,
                     )
                     due *= 0.5
                 # What is not followed is as bright as what is.
