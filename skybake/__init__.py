@@ -91,6 +91,7 @@ if TYPE_CHECKING:
     from skybake.sequence.bake import bake_sequence
     from skybake.sequence.exposure_curve import ExposureCurve
     from skybake.sequence.frame import FrameOutcome
+    from skybake.sequence.moon_path import MoonPath
     from skybake.sequence.plan import Frame, Plan
     from skybake.sequence.planning import plan_sequence
     from skybake.sequence.products import Products, default_manifest
@@ -142,6 +143,7 @@ __all__ = [
     "Moment",
     "Moon",
     "MoonFigures",
+    "MoonPath",
     "Moonlight",
     "Night",
     "Octahedral",
@@ -246,6 +248,7 @@ _HOMES = {
     "Moment": "skybake.ephemeris.moment",
     "Moon": "skybake.ephemeris.moon",
     "MoonFigures": "skybake.image.moon_figures",
+    "MoonPath": "skybake.sequence.moon_path",
     "Moonlight": "skybake.image.moonlight",
     "Night": "skybake.image.night",
     "Octahedral": "skybake.projection",
