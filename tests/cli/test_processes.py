@@ -2,7 +2,9 @@
 
 import random
 import signal
+import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import OpenImageIO
@@ -77,7 +79,10 @@ def test_a_second_signal_does_not_cut_the_clean_up_short(tmp_path):
 @pytest.mark.usefixtures("warm")
 def test_a_signal_that_is_ignored_stays_so(tmp_path):
     process = start("render", *SMALL, "-q", "-o", "a.exr", cwd=tmp_path, wrapper=("nohup",))
-    time.sleep(0.2)  # nohup itself must have begun
+    program = Path(f"/proc/{process.pid}/cmdline")
+    while sys.executable.encode() != program.read_bytes().split(b"\0")[0]:
+        assert process.poll() is None
+        time.sleep(0.01)
     while process.poll() is None:
         process.send_signal(signal.SIGHUP)
         time.sleep(0.05)
