@@ -65,7 +65,7 @@ class Cloudscape:
     altitude : float
         Of the observer. [km]
     sun : ndarray of float64, shape (3,)
-        Toward the sun: x east, y north, z up.
+        Toward the sun: x east, y north, z up; 0 where the air alone sends light.
     weights : ndarray of float64, shape (wavelength, channel)
         See `solve_layer`.
     depth : float
@@ -194,7 +194,7 @@ class Cloudscape:
                 depth=self.depth,
                 shortest=SHORTEST if is_surface else 0.2 * float(layer.grid.spacing[0]),
                 longest=0.5 * across,
-                taps=0 if is_deck else TAPS[not is_surface],
+                taps=0 if is_deck or not self.sun.any() else TAPS[not is_surface],
                 reach=REACH[not is_surface] * across,
                 pixel=pixel,
             )

@@ -118,16 +118,22 @@ class CloudsOver:
         clouds, shape = self._cloudscape, xyz.shape[:2]
         # Each pixel by its own size: which others are in its band must not matter.
         sizes = np.rint(np.log(footprint) / math.log(ALIKE)).astype(int)
-        classes, extent = (np.broadcast_to(each, shape) for each in (sizes, footprint))
-        angle, bearing = (
-            np.broadcast_to(each, shape).ravel() for each in (zenith, azimuth + self._sun_azimuth)
+        bearing = azimuth + self._sun_azimuth
+        # Of maps whose rows have one zenith angle these are few.
+        directions = np.broadcast_to(unit_vectors(zenith, bearing), (*shape, 3))
+        flat = directions.reshape(-1, 3)
+        angle, bearing, extent, classes = (
+            np.ascontiguousarray(np.broadcast_to(each, shape)).ravel()
+            for each in (zenith, bearing, np.asarray(footprint, float), sizes)
         )
-        directions, classes = unit_vectors(angle, bearing), classes.ravel()
+        apart = np.unique(sizes).tolist()
 
         def see(pixels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            return _see(clouds, directions[pixels], classes[pixels])
+            if len(apart) == 1:
+                return clouds.see(flat[pixels], RESOLVED * ALIKE ** apart[0])
+            return _see(clouds, flat[pixels], classes[pixels])
 
-        given = directions.reshape(*shape, 3), np.ascontiguousarray(extent, float), xyz
+        given = directions, extent.reshape(shape), xyz
         seen, passing = see_rows(see, *given, clouds.alike, clouds.workers)
         return angle, bearing, seen, passing
 

@@ -172,6 +172,12 @@ class Moonlit:
         least = float((self._scene.clear_survey @ self._scene.luminance).min())
         return ZENITH_SHARE * self.illuminance_above > SEEN_SHARE * least
 
+    @cached_property
+    def rgb_weights(self) -> Array:
+        """As `Scene.rgb_weights`, of what scatters the light of the Moon."""
+        weights: Array = self.air_weights @ self._to_rgb
+        return weights
+
     @property
     def _top(self) -> float:
         return self._scene.sky.medium.r_top
@@ -185,7 +191,7 @@ class Moonlit:
 
     @cached_property
     def _table(self) -> FoldedTable:
-        return self._stages.folded_table(self.sky, self.air_weights @ self._to_rgb)
+        return self._stages.folded_table(self.sky, self.rgb_weights)
 
     def add(self, zenith: Array, azimuth: Array, footprint: Array | float, out: Pixels) -> None:
         """Add its scattered light to pixels, whose azimuths are counted from the sun."""

@@ -48,6 +48,8 @@ class NightGlow:
 
     Attributes
     ----------
+    dome : NightDome
+        As given.
     airglow : float
         As given.
     illuminance : float
@@ -63,6 +65,7 @@ class NightGlow:
         to_rgb = rgb_from_xyz(encoding.space).T / encoding.white_luminance
         self._table = (dome.xyz @ to_rgb).astype(np.float32)
         self._horizon, self._workers = dome.zenith_horizon, scene.workers
+        self.dome = dome
         self._sun_azimuth = scene.settings.lighting.sun_azimuth
 
     def add(self, zenith: Array, azimuth: Array, footprint: Array | float, out: Pixels) -> None:

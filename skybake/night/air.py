@@ -59,6 +59,8 @@ class NightAir:
         XYZ of the glow of a city all around, whose luminance in the zenith is 1.
     city_spectra : ndarray of float64, shape (row, channel)
         Of the same glow.
+    lamps : ndarray of float64, shape (channel,)
+        Radiance of the ground of that city.
     """
 
     def __init__(self, sky: Sky, *, has_airglow: bool, has_city: bool = False) -> None:
@@ -83,9 +85,10 @@ class NightAir:
                 self._layers.append((layer, seen))
         self.airglow = self._airglow()
         self.city_spectra = np.zeros((ABOVE + BELOW, self.weights.shape[0]))
+        self.lamps = np.zeros(self.weights.shape[0])
         self.city = np.zeros((ABOVE + BELOW, 3))
         if has_city:
-            self.city = self._city(sky)
+            self._add_city(sky)
 
     def scattered(self, rings: Array, workers: Workers = ALL_CPUS) -> Array:
         """Radiance that is scattered toward the observer, shape (row, wavelength).
@@ -112,20 +115,21 @@ class NightAir:
         weights[ABOVE:, NODES_ABOVE:] = _cubic_weights(BELOW, NODES_BELOW)
         return nodes, weights
 
-    def _city(self, sky: Sky) -> Array:
-        """XYZ of the glow of a city, and of the ground that it lights, shape (row, 3)."""
+    def _add_city(self, sky: Sky) -> None:
+        """Find the glow of a city, and that of the ground that it lights."""
         zenith = self.zenith[:ABOVE]
-        glow = ground_response(sky, zenith, sky.workers)
-        glow = glow * lamp_channels(self.channels)
+        lamps = lamp_channels(self.channels)
+        above = self._nodes[self._nodes < self.zenith_horizon]
+        response = ground_response(sky, above, sky.workers)
+        glow = self._between[:ABOVE, : above.size] @ response * lamps
         on_plane = np.sin(zenith) * np.maximum(np.cos(zenith), 0.0)
         irradiance = 2.0 * math.pi * np.trapezoid(glow * on_plane[:, None], zenith, axis=0)
         albedo = sky.skylight.atmosphere.medium.ground_albedo
         ground = np.broadcast_to(albedo * irradiance / math.pi, (BELOW, albedo.size))
         spectra = np.concatenate([glow, ground])
         xyz = spectra @ self.weights
-        self.city_spectra = spectra / xyz[0, 1]
-        in_zenith: Array = xyz / xyz[0, 1]
-        return in_zenith
+        self.city_spectra, self.lamps = spectra / xyz[0, 1], lamps / xyz[0, 1]
+        self.city = xyz / xyz[0, 1]
 
     def _airglow(self) -> Array:
         xyz = np.zeros((ABOVE + BELOW, 3))
@@ -150,6 +154,7 @@ class NightAir:
         if city is not None:
             own, known = other.channels.wavelengths, city.channels.wavelengths
             other.city_spectra = np.stack([np.interp(own, known, row) for row in city.city_spectra])
+            other.lamps = np.interp(own, known, city.lamps)
         other.city = other.city_spectra @ other.weights
         return other
 

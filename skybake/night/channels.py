@@ -40,7 +40,8 @@ class Channels:
         flat = np.ones_like(_EVERYWHERE)
         self._to_xyz = xyz_weights(self.wavelengths, _EVERYWHERE, flat)
         self._to_rgb = rgb_from_xyz(find_colour_space("lin_rec709"))
-        self.weights = self._to_xyz if self._is_spectral else np.linalg.inv(self._to_rgb).T
+        from_rgb = np.asarray(np.linalg.inv(self._to_rgb).T, dtype=float)
+        self.weights: Array = self._to_xyz if self._is_spectral else from_rgb
         self._response: Response = response or EyeResponse()
         if response is not None:
             self.weights = weights_of_radiance(response, self.wavelengths)
