@@ -70,13 +70,8 @@ class BandScene(Scene):
         encoding = replace(scene.settings.encoding, colorspace="xyz", units="nits", ev=None)
         settings = replace(scene.settings, encoding=encoding)
         super().__init__(scene.planet, settings, scene.workers, stages, sky)
-        self._seen, self._response, self._weights = scene, response, weights
+        self._seen, self.response, self._weights = scene, response, weights
         self._shared = stages
-
-    @property
-    def response(self) -> Response:
-        """How its three channels respond to light."""
-        return self._response
 
     @property
     def xyz_weights(self) -> Array:
@@ -109,7 +104,7 @@ class BandScene(Scene):
         city = None
         if has_city:
             city = self._seen.night_air(has_airglow=has_airglow, has_city=True)
-        return own.seen_by(self._response, city)
+        return own.seen_by(self.response, city)
 
     @cached_property
     def moonlit(self) -> Moonlit | None:

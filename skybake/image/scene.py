@@ -55,6 +55,9 @@ class Scene:
         What is seen, if it is known.
     """
 
+    response: Response = EyeResponse()
+    """How its three channels respond to light."""
+
     def __init__(
         self,
         planet: Planet,
@@ -99,11 +102,6 @@ class Scene:
             If it is to be soft and no such disc fits half floats.
         """
         return drawn_sun(self)
-
-    @property
-    def response(self) -> Response:
-        """How its three channels respond to light."""
-        return EyeResponse()
 
     @cached_property
     def xyz_weights(self) -> Array:
@@ -289,8 +287,7 @@ class Scene:
     def evaluate_clear(self, zenith: Array, azimuth: Array, footprint: Array | float) -> np.ndarray:
         """Pixel values of the sky without clouds, see `evaluate`."""
         if self.is_sunless:
-            shape = np.broadcast_shapes(zenith.shape, azimuth.shape)
-            pixels = np.zeros((*shape, 3), np.float32)
+            pixels = np.zeros((*np.broadcast_shapes(zenith.shape, azimuth.shape), 3), np.float32)
         else:
             pixels = self.evaluate_sunlight(zenith, azimuth, footprint)
         for light in (self.night_glow, self.moonlit):
