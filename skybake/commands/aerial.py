@@ -24,6 +24,11 @@ from skybake.commands.options.camera import (
 )
 from skybake.commands.options.clouds import check_clouds, clouds_options
 from skybake.commands.options.maps import given_settings, map_options
+from skybake.commands.options.moonlight import (
+    moonlight_from_options,
+    moonlight_needs,
+    moonlight_options,
+)
 from skybake.commands.options.observer import (
     altitude_option,
     positions,
@@ -133,6 +138,13 @@ _EXR = values.with_suffix(".exr")
 @sun_azimuth_option()
 @moment_options
 @sun_distance_option()
+@click.option(
+    "--moon",
+    type=click.Choice(choices.MOONS_IN_AIR),
+    show_default="include, with --time",
+    help="Whether moonlight is in the air.",
+)
+@moonlight_options()
 @altitude_option()
 @clouds_options()
 @click.option(
@@ -169,10 +181,12 @@ def aerial(**options: Any) -> None:
     context = click.get_current_context()
     is_timed = options["time"] is not None
     fills = options["sky"] == "fill"
+    by_moon = {**options, "night": None}
     check_needs(
         context,
         moment_needs(context),
         sun_distance_needs(options, is_timed=is_timed, time="--time"),
+        moonlight_needs(by_moon, is_timed=is_timed, time="--time"),
         {
             "units": (options["ev"] is None, "cannot be combined with --ev"),
             **dict.fromkeys(_SUN, (fills, "needs --sky fill")),
@@ -205,18 +219,23 @@ def aerial(**options: Any) -> None:
     camera = _camera(options, source)
     where["altitude"] = altitude_with(camera, where["altitude"])
     try:
-        settings = image_settings.map_settings(None, **_scale(options, source), **where)
+        settings = image_settings.map_settings(
+            None,
+            **_scale(options, source),
+            **where,
+            moonlight=moonlight_from_options(by_moon, moment, where),
+        )
     except InputError as error:
         raise click.UsageError(f"--{error}") from error
     distance = sun_distance(planet, moment, options["sun_distance"])
     settings = replace(settings, lighting=replace(settings.lighting, sun_distance=distance))
     check_uneclipsed(planet, settings, moment)
-    if settings.lighting.sun_elevation < NIGHT:
-        warn(
-            "sun is more than 18 degrees below the horizon: the air is dark, as the light of moon "
-            "and night is not in it"
-        )
     scene = Scene(planet, settings)
+    if settings.lighting.sun_elevation < NIGHT and scene.moonlit is None:
+        warn(
+            "sun is more than 18 degrees below the horizon: the air is dark, as the night's own "
+            "light is not in it, and no Moon shines"
+        )
     if not options["quiet"] and not scene.sky.is_solved:
         notice("solving for the light in this atmosphere, once")
     with late_kernels.compiled_in_background():

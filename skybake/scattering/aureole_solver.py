@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from skybake.jit.arguments import flatten
 from skybake.jit.kernel import kernel
-from skybake.jit.workers import ALL_CPUS, Workers
+from skybake.jit.workers import ALL_CPUS, ONE_CPU, Workers
 from skybake.optics.delta_m import SERIES_ORDER, peak_moments, peaked_shares
 from skybake.optics.legendre import legendre_polynomials
 from skybake.optics.medium import Array, pad_wavelengths, vertical_columns
@@ -91,13 +91,13 @@ def solve_aureole(
     ).reshape(len(radius), -1, 4)
     moments = peak_moments(atmosphere.medium, scaled)
     first = _peaks_of_straight(atmosphere, rays, workers).reshape(*shape, -1)
-    first -= straight_light(atmosphere, grid, around.cosine, moments)[:, :, :, None]
+    first -= straight_light(atmosphere, grid, around.cosine, moments, workers)[:, :, :, None]
     first *= fade(np.arccos(around.cosine))[:, None, None]
-    aureole = _scattered(atmosphere, grid, around, moments, first)
+    aureole = _scattered(atmosphere, grid, around, moments, first, workers)
     difference = first + _transport(atmosphere, aureole, field, rays, workers).reshape(first.shape)
     return (
-        _scattered(atmosphere, grid, around, moments, difference),
-        project_rings(grid, around, difference, field),
+        _scattered(atmosphere, grid, around, moments, difference, workers),
+        project_rings(grid, around, difference, field, workers),
     )
 
 
@@ -110,15 +110,19 @@ def _peaks_of_straight(atmosphere: Atmosphere, rays: Array, workers: Workers) ->
         shells=altitude_shells(scaled.medium, SHELLS), field=no_field(scaled)
     )
     radiance = np.empty((*rays.shape[:2], scaled.mixture.size), np.float32)
-    for node, each in enumerate(rays):
-        light = trace_rays(coarse, *each.T, max_arc=ARC, workers=workers)
-        phase = eval_phase(peaks, each[:, 3])
-        radiance[node] = (light.single[:, constituents:] * phase).sum(axis=1)
+
+    def work(first: int, last: int) -> None:
+        for node in range(first, last):
+            light = trace_rays(coarse, *rays[node].T, max_arc=ARC, workers=ONE_CPU)
+            phase = eval_phase(peaks, rays[node, :, 3])
+            radiance[node] = (light.single[:, constituents:] * phase).sum(axis=1)
+
+    workers.run_rows(len(rays), work)
     return radiance
 
 
 def straight_light(
-    atmosphere: Atmosphere, grid: Grid, cosine: Array, moments: Array
+    atmosphere: Atmosphere, grid: Grid, cosine: Array, moments: Array, workers: Workers
 ) -> npt.NDArray[np.float32]:
     """Radiance that peaks alone have scattered if each path went straight from the sun.
 
@@ -135,6 +139,8 @@ def straight_light(
         Of angles from the sun.
     moments : ndarray, shape (constituent, `SERIES_ORDER` + 1, wavelength)
         Of the peaks.
+    workers : Workers
+        Who does the work.
 
     Returns
     -------
@@ -155,9 +161,13 @@ def straight_light(
     polynomials = legendre_polynomials(cosine, SERIES_ORDER)
     polynomials *= ((2 * degree + 1) / (4.0 * math.pi))[:, None]
     straight = np.empty((*depth.shape[:2], cosine.size, depth.shape[2]), np.float32)
-    for i in range(len(depth)):
-        series = np.exp(depth[i] * mean[:, None] - extinction[i]) - np.exp(-extinction[i])
-        straight[i] = np.einsum("lq,ljw->jqw", polynomials, series, optimize=True)
+
+    def work(first: int, last: int) -> None:
+        for i in range(first, last):
+            series = np.exp(depth[i] * mean[:, None] - extinction[i]) - np.exp(-extinction[i])
+            straight[i] = np.einsum("lq,ljw->jqw", polynomials, series, optimize=True)
+
+    workers.run_rows(len(depth), work)
     return straight
 
 
@@ -170,7 +180,12 @@ def _fill_sun_columns(columns, r_bottom, r_top, radius, mu_s, out):
 
 
 def _scattered(
-    atmosphere: Atmosphere, grid: Grid, around: Rings, moments: Array, radiance: Array
+    atmosphere: Atmosphere,
+    grid: Grid,
+    around: Rings,
+    moments: Array,
+    radiance: Array,
+    workers: Workers,
 ) -> Aureole:
     """Scatter light once in the peaks, in each altitude's mixture of constituents."""
     scaled = atmosphere.scaled
@@ -180,21 +195,26 @@ def _scattered(
     angles = np.linspace(0.0, LAST_ANGLE, ANGLES)
     at_angles = harmonics_at(harmonics, np.cos(angles)) * fade(angles)[:, None]
     source = np.empty((*radiance.shape[:2], ANGLES, ORDERS, radiance.shape[-1]), np.float32)
-    for m in range(ORDERS):
-        order = harmonics.azimuthal == m
-        degree = harmonics.degree[order]
-        term = np.cos(m * around.position) * around.position_weight * 2.0
-        of_rings = np.einsum("ijqp,ijqpw->ijqw", term, radiance, optimize=True)
-        each = np.einsum(
+    each = [
+        np.einsum(
             "al,clw,ql->caqw",
-            at_angles[:, order],
-            moments[:, degree],
-            at_rings[:, order],
+            at_angles[:, harmonics.azimuthal == m],
+            moments[:, harmonics.degree[harmonics.azimuthal == m]],
+            at_rings[:, harmonics.azimuthal == m],
             optimize=True,
         )
-        for i in range(len(radiance)):
-            mixed = np.einsum("cw,caqw->aqw", share[i], each)
-            source[i, :, :, m] = np.einsum("aqw,jqw->jaw", mixed, of_rings[i], optimize=True)
+        for m in range(ORDERS)
+    ]
+
+    def work(first: int, last: int) -> None:
+        for i in range(first, last):
+            for m in range(ORDERS):
+                term = np.cos(m * around.position[i]) * around.position_weight[i] * 2.0
+                of_rings = np.einsum("jqp,jqpw->jqw", term, radiance[i], optimize=True)
+                mixed = np.einsum("cw,caqw->aqw", share[i], each[m])
+                source[i, :, :, m] = np.einsum("aqw,jqw->jaw", mixed, of_rings, optimize=True)
+
+    workers.run_rows(len(radiance), work)
     return Aureole(source.reshape(*source.shape[:3], -1))
 
 

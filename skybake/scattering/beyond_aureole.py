@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.angles import cosine_between
-from skybake.jit.workers import Workers
+from skybake.jit.workers import ONE_CPU, Workers
 from skybake.optics.delta_m import PEAK_NODES
 from skybake.optics.medium import Array
 from skybake.optics.phase import eval_phase
@@ -79,24 +79,30 @@ def light_beyond_aureole(
     phases = phases.reshape(-1, PEAK_NODES.size, *phases.shape[1:])[:, NODES]
     phases = phases.reshape(-1, *phases.shape[2:])
     angles = np.linspace(FADES_FROM, math.pi, ANGLES)
-    straight = straight_light(atmosphere, grid, np.cos(angles), moments)
+    straight = straight_light(atmosphere, grid, np.cos(angles), moments, workers)
     to_fine = _cosine_series(TRACED, FINE, TRACED.size)
     to_grid = _cosine_series(FINE, grid.azimuth, grid.azimuth.size)
-    traced, sines = grid._replace(azimuth=TRACED), np.sin(grid.sun_angle)[:, None]
+    traced = grid._replace(azimuth=TRACED)
+    mu_s, sines = np.cos(grid.sun_angle)[:, None], np.sin(grid.sun_angle)[:, None]
     kept = _kept(high)[:, None, None]
-    for i, mu in enumerate(grid.mu[:, :, None, None]):
-        light = trace_rays(coarse, *rays_at(scaled, traced, i).T, max_arc=ARC, workers=workers)
-        single = _between_nodes(light.single, len(phases)).reshape(
-            len(mu), high.size, TRACED.size, -1
-        )
-        nu = cosine_between(mu, np.sqrt(1.0 - mu**2), np.cos(grid.sun_angle)[:, None], sines, FINE)
-        nu = np.clip(nu, -1.0, 1.0)
-        at_fine = np.matmul(to_fine, single).reshape(nu.size, len(phases), -1)
-        radiance = (at_fine * eval_phase(phases, nu.ravel())).sum(axis=1).reshape(*nu.shape, -1)
-        angle = np.arccos(nu)
-        radiance -= _at_angles(straight[i], angle)
-        radiance *= (1.0 - fade(angle))[..., None]
-        out[i, :, : high.size] = np.matmul(to_grid, radiance * kept)
+
+    def work(first: int, last: int) -> None:
+        for i in range(first, last):
+            mu = grid.mu[i, :, None, None]
+            light = trace_rays(coarse, *rays_at(scaled, traced, i).T, max_arc=ARC, workers=ONE_CPU)
+            single = _between_nodes(light.single, len(phases)).reshape(
+                len(mu), high.size, TRACED.size, -1
+            )
+            nu = cosine_between(mu, np.sqrt(1.0 - mu**2), mu_s, sines, FINE)
+            nu = np.clip(nu, -1.0, 1.0)
+            at_fine = np.matmul(to_fine, single).reshape(nu.size, len(phases), -1)
+            radiance = (at_fine * eval_phase(phases, nu.ravel())).sum(axis=1).reshape(*nu.shape, -1)
+            angle = np.arccos(nu)
+            radiance -= _at_angles(straight[i], angle)
+            radiance *= (1.0 - fade(angle))[..., None]
+            out[i, :, : high.size] = np.matmul(to_grid, radiance * kept)
+
+    workers.run_rows(len(grid.mu), work)
     return out
 
 

@@ -53,10 +53,10 @@ def solve_horizon_peaks(
     scaled = atmosphere.scaled
     moments = peak_moments(atmosphere.medium, scaled)
     sparse, spread = _sparse_altitudes(grid)
-    source = scatter_around_horizon(scaled, grid, moments, radiance, 1.0)
+    source = scatter_around_horizon(scaled, grid, moments, radiance, 1.0, workers)
 
     def add(unknown: npt.NDArray[np.float32]) -> None:
-        scattered = scatter_around_horizon(scaled, sparse, moments, unknown, 0.0)
+        scattered = scatter_around_horizon(scaled, sparse, moments, unknown, 0.0, workers)
         source[...] += np.tensordot(spread, scattered, axes=1)
 
     add(light_beyond_aureole(atmosphere, sparse, moments, workers))
@@ -64,7 +64,7 @@ def solve_horizon_peaks(
     dark = dark._replace(polarised=dark.polarised[:0])
     rays = trace_grid(scaled, sparse)
     peaks = HorizonPeaks(source.copy())
-    add(transport_field(scaled, dark, peaks, sparse, rays, workers)[0])
+    add(transport_field(scaled, dark, peaks, sparse, rays, workers))
     return HorizonPeaks(source)
 
 
@@ -84,6 +84,7 @@ def scatter_around_horizon(
     moments: Array,
     radiance: npt.NDArray[np.float32],
     straight: float,
+    workers: Workers,
 ) -> npt.NDArray[np.float32]:
     """Scatter light in peaks around the horizon, less what goes straight on.
 
@@ -100,6 +101,8 @@ def scatter_around_horizon(
     straight : float
         Share of what peaks scatter of this light that goes straight on already: 1 for light that
         the truncated medium transports, 0 for light that it does not know.
+    workers : Workers
+        Who does the work.
 
     Returns
     -------
@@ -114,20 +117,25 @@ def scatter_around_horizon(
     fine, spread = _fine_directions(grid, mu_horizon)
     mu, interpolation = _elevations(grid, mu_horizon)
     kept = _single(straight * fraction * interpolation[:, None])
-    radiance = np.matmul(_fourier_terms(grid.azimuth), radiance)
-    altitudes, polar, suns, orders, wavelengths = radiance.shape
-    source = np.empty((altitudes, suns, mu.shape[1], orders, wavelengths), np.float32)
-    fade = _fade()
-    for m in range(orders):
-        at_fine = _associated_legendre(m, fine)
-        at_elevations = _single(_associated_legendre(m, mu).transpose(1, 2, 0))
-        for i in range(altitudes):
-            there = _single(at_fine[:, i] @ spread[i])
-            here = (mixed[i, ..., m:] * at_elevations[i]).reshape(-1, len(there))
-            peaked = (here @ there).reshape(wavelengths, -1, polar)
-            peaked = (peaked - kept[i]) * fade
-            term = np.ascontiguousarray(radiance[i, :, :, m].transpose(2, 0, 1))
-            source[i, :, :, m] = (peaked @ term).transpose(2, 1, 0)
+    fourier, fade = _fourier_terms(grid.azimuth), _fade()
+    altitudes, polar, suns, azimuths, wavelengths = radiance.shape
+    source = np.empty((altitudes, suns, mu.shape[1], azimuths, wavelengths), np.float32)
+    orders = range(azimuths)
+    at_fine = [_associated_legendre(m, fine) for m in orders]
+    at_elevations = [_single(_associated_legendre(m, mu).transpose(1, 2, 0)) for m in orders]
+
+    def work(first: int, last: int) -> None:
+        for i in range(first, last):
+            terms = np.matmul(fourier, radiance[i])
+            for m in orders:
+                there = _single(at_fine[m][:, i] @ spread[i])
+                here = (mixed[i, ..., m:] * at_elevations[m][i]).reshape(-1, len(there))
+                peaked = (here @ there).reshape(wavelengths, -1, polar)
+                peaked = (peaked - kept[i]) * fade
+                term = np.ascontiguousarray(terms[:, :, m].transpose(2, 0, 1))
+                source[i, :, :, m] = (peaked @ term).transpose(2, 1, 0)
+
+    workers.run_rows(altitudes, work)
     return source.reshape(*source.shape[:3], -1)
 
 

@@ -17,7 +17,13 @@ from skybake.scattering.field import (
     altitude_weight,
     fill_ground_irradiance,
 )
-from skybake.scattering.field_sums import add_orders, fill_factors, sum_degrees
+from skybake.scattering.field_sums import (
+    TOGETHER,
+    add_orders,
+    count_orders,
+    fill_factors,
+    sum_degrees,
+)
 from skybake.scattering.harmonics import fill_harmonics
 from skybake.scattering.horizon_peaks import add_horizon_peaks, fill_elevation_weights
 from skybake.scattering.polarised import (
@@ -44,6 +50,8 @@ class Scratch(NamedTuple):
         Of `fill_suns`.
     fourier : ndarray of float32, shape (sun, order m * wavelength)
         Sums over degrees l at the nodes of the sun's angle.
+    orders : ndarray of int64, shape (sun,)
+        How many of the orders m matter there.
     series : ndarray of float32, shape (order m * wavelength,)
         The same between nodes.
     harmonic, factor : ndarray, shape (harmonic,) and (harmonic * wavelength,)
@@ -67,6 +75,7 @@ class Scratch(NamedTuple):
     weights: Array
     cosine: Array
     fourier: npt.NDArray[np.float32]
+    orders: npt.NDArray[np.int64]
     series: npt.NDArray[np.float32]
     harmonic: Array
     factor: npt.NDArray[np.float32]
@@ -87,13 +96,15 @@ def allocate_scratch(field: DiffuseField, fans: Fans) -> Scratch:
     harmonics = field.harmonics.degree.size
     widest = int(np.diff(fans.first).max())
     orders = field.harmonics.order + 1
+    size = -(-orders // TOGETHER) * TOGETHER * wavelengths
     return Scratch(
         angle=np.empty(widest),
         node=np.empty(widest, np.int64),
         weights=np.empty((widest, 4)),
         cosine=np.empty(widest),
-        fourier=np.empty((suns, orders * wavelengths), np.float32),
-        series=np.empty(orders * wavelengths, np.float32),
+        fourier=np.empty((suns, size), np.float32),
+        orders=np.empty(suns, np.int64),
+        series=np.empty(size, np.float32),
         harmonic=np.empty(harmonics),
         factor=np.empty(harmonics * wavelengths, np.float32),
         scattering=np.empty((orders, wavelengths), np.float32),
@@ -187,8 +198,8 @@ def add_diffuse(field, radiance, peaks, scaled, fans, begin, end, samples, scrat
                     add_horizon_peaks(
                         peaks, low, u, j, at, polar, emitted[0], degrees, series, fourier[j]
                     )
-            for q in range(count):
-                add_orders(fourier, node[q], weights[q], cosine[q], degrees, series, out[i + q])
+                scratch.orders[j] = count_orders(fourier[j], degrees, wavelengths)
+            add_orders(fourier, scratch.orders, node, weights, cosine, series, out[i : i + count])
             if is_polarised and stokes.shape[0] > 0:
                 fill_spin_functions(mu_here, scratch.spins)
                 add_twists(

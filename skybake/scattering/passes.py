@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from skybake.angles import cosine_between
 from skybake.jit.arguments import Flat, flatten
-from skybake.jit.workers import Workers
+from skybake.jit.workers import ONE_CPU, Workers
 from skybake.optics.delta_m import ScaledMedium
 from skybake.optics.legendre import legendre_polynomials
 from skybake.optics.matrix import scattering_plane
@@ -41,31 +41,53 @@ FIRST_ARC = math.radians(2.0)
 
 
 def scatter_sunlight(
-    atmosphere: Atmosphere, grid: Grid, workers: Workers
-) -> tuple[DiffuseField, npt.NDArray[np.float32]]:
-    """Moments of the light scattered or reflected exactly once, and its radiance at the nodes.
+    atmosphere: Atmosphere,
+    grid: Grid,
+    workers: Workers,
+    radiance: npt.NDArray[np.float32] | None = None,
+) -> DiffuseField:
+    """Moments of the light scattered or reflected exactly once.
 
-    The radiance is of shape (altitude, polar, sun, azimuth, wavelength).
+    Parameters
+    ----------
+    atmosphere : Atmosphere
+        Its medium and columns.
+    grid : Grid
+        Nodes.
+    workers : Workers
+        Who does the work.
+    radiance : ndarray of float32, shape (altitude, polar, sun, azimuth, wavelength), optional
+        Receives the radiance at the nodes. [sr⁻¹]
     """
     scaled, without_peaks = atmosphere.scaled, _without_peaks(atmosphere)
-    constituents = scaled.medium.phase.shape[0]
     field = empty_field(scaled, grid.altitude, grid.sun_angle, ORDER)
     degree = np.arange(ORDER + 1)
     series = scaled.moments * ((2 * degree + 1) / (4.0 * math.pi))[:, None]
-    radiances = np.empty((grid.altitude.size, *_shape(grid), scaled.mixture.size), np.float32)
-    for i in range(grid.altitude.size):
-        rays = rays_at(scaled, grid, i)
-        light = trace_rays(without_peaks, *rays.T, max_arc=FIRST_ARC, workers=workers)
-        polynomials = legendre_polynomials(rays[:, 3], ORDER)
-        radiance = light.diffuse
-        for c in range(constituents):
-            radiance += light.single[:, c] * (polynomials.T @ series[c])
-        radiances[i] = radiance.reshape(radiances.shape[1:])
-        project(grid, i, radiances[i], field)
-        if len(scaled.matrix_moments):
-            stokes = _polarise(scaled, rays, light.single)
-            project_polarised(grid, i, stokes.reshape(*_shape(grid), 2, -1), field)
-    return field, radiances
+    scattering = np.flatnonzero(scaled.medium.scattering.any(axis=1))
+
+    def work(first: int, last: int) -> None:
+        for i in range(first, last):
+            rays = rays_at(scaled, grid, i)
+            light = trace_rays(without_peaks, *rays.T, max_arc=FIRST_ARC, workers=ONE_CPU)
+            polynomials = legendre_polynomials(rays[:, 3], ORDER)
+            here = light.diffuse
+            for c in scattering:
+                here += light.single[:, c] * (polynomials.T @ series[c])
+            here = here.reshape(*_shape(grid), -1)
+            project(grid, i, here, field)
+            if radiance is not None:
+                radiance[i] = here
+            if len(scaled.matrix_moments):
+                stokes = _polarise(scaled, rays, light.single)
+                project_polarised(grid, i, stokes.reshape(*_shape(grid), 2, -1), field)
+
+    workers.run_rows(grid.altitude.size, work)
+    return field
+
+
+def empty_radiance(scaled: ScaledMedium, grid: Grid) -> npt.NDArray[np.float32]:
+    """Room for the radiance at a grid's nodes, which is left as it is."""
+    return np.empty((grid.altitude.size, *_shape(grid), scaled.mixture.size), np.float32)
 
 
 def _without_peaks(atmosphere: Atmosphere) -> Atmosphere:
@@ -81,14 +103,21 @@ def _without_peaks(atmosphere: Atmosphere) -> Atmosphere:
 def polarise_sunlight(
     atmosphere: Atmosphere, grid: Grid, workers: Workers
 ) -> npt.NDArray[np.float32]:
-    """Q and U at a grid's nodes of light scattered once, as of `transport_field`."""
+    """Q and U at a grid's nodes of light scattered once.
+
+    The shape is (altitude, polar, sun, azimuth, 2, wavelength).
+    """
     scaled, without_peaks = atmosphere.scaled, _without_peaks(atmosphere)
     shape = grid.altitude.size, *_shape(grid), 2, scaled.mixture.size
     stokes = np.empty(shape, np.float32)
-    for i in range(grid.altitude.size):
-        rays = rays_at(scaled, grid, i)
-        light = trace_rays(without_peaks, *rays.T, max_arc=FIRST_ARC, workers=workers)
-        stokes[i] = _polarise(scaled, rays, light.single).reshape(shape[1:])
+
+    def work(first: int, last: int) -> None:
+        for i in range(first, last):
+            rays = rays_at(scaled, grid, i)
+            light = trace_rays(without_peaks, *rays.T, max_arc=FIRST_ARC, workers=ONE_CPU)
+            stokes[i] = _polarise(scaled, rays, light.single).reshape(shape[1:])
+
+    workers.run_rows(grid.altitude.size, work)
     return stokes
 
 
@@ -99,6 +128,8 @@ def _polarise(scaled: ScaledMedium, rays: Array, single: Array) -> npt.NDArray[n
     functions = wigner(0, 2, ORDER, rays[:, 3]).T
     across = np.zeros((len(rays), single.shape[2]))
     for c, moments in enumerate(scaled.matrix_moments[:, 0]):
+        if not (moments.any() and scaled.medium.scattering[c].any()):
+            continue
         across += single[:, c] * (functions @ (scale * moments))
     turn = scattering_plane(*rays[:, 1:].T)
     return (across[:, None] * turn[..., None]).astype(np.float32)
@@ -145,26 +176,41 @@ def trace_grid(scaled: ScaledMedium, grid: Grid) -> list[Batch]:
 
 
 def scatter_field(
-    scaled: ScaledMedium, field: DiffuseField, grid: Grid, batches: list[Batch], workers: Workers
-) -> tuple[DiffuseField, npt.NDArray[np.float32]]:
+    scaled: ScaledMedium,
+    field: DiffuseField,
+    grid: Grid,
+    batches: list[Batch],
+    workers: Workers,
+    radiance: npt.NDArray[np.float32] | None = None,
+) -> DiffuseField:
     """Scatter a field once more and transport it; the ground reflects its irradiance.
 
-    Returns moments and radiance as `scatter_sunlight` does.
+    Returns moments, and writes radiance as `scatter_sunlight` does. Each altitude's light is
+    projected before the next is transported, so that it never leaves a processor's cache.
     """
-    peaks = no_horizon_peaks(scaled)
-    radiance, stokes = transport_field(scaled, field, peaks, grid, batches, workers)
+    light = _flat_light(scaled, field, no_horizon_peaks(scaled))
     scattered = field._replace(
         radiance=np.empty_like(field.radiance), ground=np.empty_like(field.ground)
     )
+    rays, wavelengths = math.prod(_shape(grid)), field.ground.shape[1]
+    polarised_rays = rays if len(field.polarised) else 0
 
-    def store(first: int, last: int) -> None:
+    def work(first: int, last: int) -> None:
         for i in range(first, last):
-            project(grid, i, radiance[i], scattered)
-            if stokes.size:
-                project_polarised(grid, i, stokes[i], scattered)
+            out = np.zeros((rays, wavelengths), np.float32)
+            stokes = np.zeros((polarised_rays, 2 * wavelengths), np.float32)
+            for batch in batches:
+                if batch.node == i:
+                    _add_batch(light, field, batch, out, stokes)
+            here = out.reshape(*_shape(grid), wavelengths)
+            project(grid, i, here, scattered)
+            if radiance is not None:
+                radiance[i] = here
+            if polarised_rays:
+                project_polarised(grid, i, stokes.reshape(*_shape(grid), 2, wavelengths), scattered)
 
-    workers.run_rows(len(radiance), store)
-    return scattered, radiance
+    workers.run_rows(grid.altitude.size, work)
+    return scattered
 
 
 def transport_field(
@@ -174,24 +220,33 @@ def transport_field(
     grid: Grid,
     batches: list[Batch],
     workers: Workers,
-) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
-    """Radiance at a grid's nodes of a field that is scattered once, as `scatter_sunlight`'s.
-
-    Also Q and U, of shape (altitude, polar, sun, azimuth, 2, wavelength), or empty.
-    """
-    shape = *_shape(grid), field.ground.shape[1]
-    out = np.zeros((grid.altitude.size, math.prod(shape[:-1]), shape[-1]), np.float32)
-    rays_of_stokes = out.shape[1] if len(field.polarised) else 0
-    stokes = np.zeros((len(out), rays_of_stokes, 2 * shape[-1]), np.float32)
-    light = [flatten(each) for each in (field, side_by_side(field), peaks, scaled)]
+) -> npt.NDArray[np.float32]:
+    """Radiance at a grid's nodes of a field that is scattered once, as `scatter_sunlight`'s."""
+    shape = grid.altitude.size, *_shape(grid), field.ground.shape[1]
+    out = np.zeros((shape[0], math.prod(shape[1:-1]), shape[-1]), np.float32)
+    stokes = np.zeros((0, 2 * shape[-1]), np.float32)
+    light = _flat_light(scaled, field, peaks)
 
     def work(first: int, last: int) -> None:
         for batch in batches[first:last]:
-            scratch = allocate_scratch(field, batch.fans.value)
-            rays = batch.fans, batch.begin, batch.end, batch.samples
-            add_diffuse(*light, *rays, scratch, out[batch.node], stokes[batch.node])
+            _add_batch(light, field, batch, out[batch.node], stokes)
 
     workers.run_rows(len(batches), work)
-    if stokes.size:
-        stokes = stokes.reshape(len(out), *shape[:-1], 2, shape[-1])
-    return out.reshape(-1, *shape), stokes
+    return out.reshape(shape)
+
+
+def _flat_light(scaled: ScaledMedium, field: DiffuseField, peaks: HorizonPeaks) -> list[Flat]:
+    return [flatten(each) for each in (field, side_by_side(field), peaks, scaled)]
+
+
+def _add_batch(
+    light: list[Flat],
+    field: DiffuseField,
+    batch: Batch,
+    out: npt.NDArray[np.float32],
+    stokes: npt.NDArray[np.float32],
+) -> None:
+    """Add the diffuse light that rays of a batch bring, and Q and U if there are rows for them."""
+    scratch = allocate_scratch(field, batch.fans.value)
+    rays = batch.fans, batch.begin, batch.end, batch.samples
+    add_diffuse(*light, *rays, scratch, out, stokes)

@@ -100,25 +100,24 @@ def add_twists(twist, node, weights, cosine, spins, series, out):
     """Add Q and U of scattered light to the rays of a fan, (ray, 2 * wavelength).
 
     Rays are interpolated between four suns as `node` and `weights` say; the sun is to the left.
+    Indices are unsigned as those of `skybake.scattering.field_sums.add_orders`.
     """
-    for q in range(out.shape[0]):
-        _add_twist(twist, node[q], weights[q], cosine[q], spins, series, out[q])
-
-
-@kernel
-def _add_twist(twist, node, weights, cosine, spins, series, out):
-    wavelengths = out.size // 2
-    a, b = np.float32(weights[0]), np.float32(weights[1])
-    c, d = np.float32(weights[2]), np.float32(weights[3])
-    at_a, at_b, at_c, at_d = twist[node], twist[node + 1], twist[node + 2], twist[node + 3]
-    for q in range(ORDERS * wavelengths):
-        series[q] = a * at_a[q] + b * at_b[q] + c * at_c[q] + d * at_d[q]
-    sine = math.sqrt(max(0.0, 1.0 - cosine * cosine))
-    even_0, even_1 = np.float32(spins[0, 0]), np.float32(spins[0, 1] * cosine)
-    even_2 = np.float32(spins[0, 2] * (2.0 * cosine * cosine - 1.0))
-    odd_1, odd_2 = np.float32(spins[1, 1] * sine), np.float32(spins[1, 2] * 2.0 * sine * cosine)
-    first, second = series[wavelengths : 2 * wavelengths], series[2 * wavelengths :]
-    even, odd = out[:wavelengths], out[wavelengths:]
-    for k in range(wavelengths):
-        even[k] += even_0 * series[k] + even_1 * first[k] + even_2 * second[k]
-        odd[k] += odd_1 * first[k] + odd_2 * second[k]
+    lanes = np.uint64(out.shape[1] // 2)
+    third = lanes + lanes
+    for i in range(out.shape[0]):
+        j, cos = node[i], cosine[i]
+        a, b = np.float32(weights[i, 0]), np.float32(weights[i, 1])
+        c, d = np.float32(weights[i, 2]), np.float32(weights[i, 3])
+        for p in range(series.size):
+            series[p] = (
+                a * twist[j, p] + b * twist[j + 1, p] + c * twist[j + 2, p] + d * twist[j + 3, p]
+            )
+        sine = math.sqrt(max(0.0, 1.0 - cos * cos))
+        even_0, even_1 = np.float32(spins[0, 0]), np.float32(spins[0, 1] * cos)
+        even_2 = np.float32(spins[0, 2] * (2.0 * cos * cos - 1.0))
+        odd_1, odd_2 = np.float32(spins[1, 1] * sine), np.float32(spins[1, 2] * 2.0 * sine * cos)
+        for k in range(lanes):
+            first, second = series[k], series[lanes + k]
+            out[i, k] += even_0 * first + even_1 * second + even_2 * series[third + k]
+        for k in range(lanes):
+            out[i, lanes + k] += odd_1 * series[lanes + k] + odd_2 * series[third + k]

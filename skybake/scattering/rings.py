@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from skybake.jit.workers import Workers
 from skybake.optics.medium import Array
 from skybake.scattering.aureole import LAST_ANGLE
 from skybake.scattering.field import DiffuseField
@@ -76,22 +77,28 @@ def fade(angle: Array) -> Array:
     return share
 
 
-def project_rings(grid: Grid, around: Rings, radiance: Array, field: DiffuseField) -> DiffuseField:
+def project_rings(
+    grid: Grid, around: Rings, radiance: Array, field: DiffuseField, workers: Workers
+) -> DiffuseField:
     """Moments about the zenith of light around the sun."""
     solid_angle = 2.0 * around.weight[:, None] * around.position_weight
     mu_s, sine_s = np.cos(grid.sun_angle), np.sin(grid.sun_angle)
     moments = np.zeros_like(field.radiance)
     plain = field.harmonics.degree.size
-    for i in range(len(radiance)):
-        mu = around.mu[i]
-        sines = np.sqrt(np.maximum(1.0 - mu**2, 0.0)) * sine_s[:, None, None]
-        across = (around.cosine[:, None] - mu * mu_s[:, None, None]) / np.maximum(sines, 1e-12)
-        azimuth = np.arccos(np.clip(across, -1.0, 1.0))
-        for j in range(mu_s.size):
-            basis = harmonics_at(field.harmonics, mu[j].ravel())
-            basis *= np.cos(np.outer(azimuth[j].ravel(), field.harmonics.azimuthal))
-            basis *= solid_angle[i, j].reshape(-1, 1)
-            moments[i, j, :plain] = basis.T @ radiance[i, j].reshape(len(basis), -1)
+
+    def work(first: int, last: int) -> None:
+        for i in range(first, last):
+            mu = around.mu[i]
+            sines = np.sqrt(np.maximum(1.0 - mu**2, 0.0)) * sine_s[:, None, None]
+            across = (around.cosine[:, None] - mu * mu_s[:, None, None]) / np.maximum(sines, 1e-12)
+            azimuth = np.arccos(np.clip(across, -1.0, 1.0))
+            for j in range(mu_s.size):
+                basis = harmonics_at(field.harmonics, mu[j].ravel())
+                basis *= np.cos(np.outer(azimuth[j].ravel(), field.harmonics.azimuthal))
+                basis *= solid_angle[i, j].reshape(-1, 1)
+                moments[i, j, :plain] = basis.T @ radiance[i, j].reshape(len(basis), -1)
+
+    workers.run_rows(len(radiance), work)
     flux = solid_angle[0] * np.maximum(around.mu[0], 0.0)
     ground = np.einsum("jqp,jqpw->jw", flux, radiance[0], optimize=True)
     return field._replace(radiance=moments, ground=ground.astype(float))

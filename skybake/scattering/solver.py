@@ -16,7 +16,13 @@ from skybake.scattering.field import DiffuseField, lower_order, raise_order, sum
 from skybake.scattering.grid import ORDER, Grid, build_grid, coarsen_grid, empty_field
 from skybake.scattering.horizon_peaks_solver import solve_horizon_peaks
 from skybake.scattering.limits import check_medium
-from skybake.scattering.passes import Batch, scatter_field, scatter_sunlight, trace_grid
+from skybake.scattering.passes import (
+    Batch,
+    empty_radiance,
+    scatter_field,
+    scatter_sunlight,
+    trace_grid,
+)
 from skybake.scattering.tables import Atmosphere
 
 TOLERANCE = 5e-3
@@ -42,6 +48,10 @@ COARSE_ORDER = 3
 
 DIVERGED = 0.5
 """Relative change that no iteration which will converge shows after `SURE_PASSES`."""
+
+SINGLE, BENT, SETTLED, SCATTERED = 0.25, 0.35, 0.45, 0.6
+"""Shares of the work that are usually done with sunlight scattered once, its aureole, the light of
+few harmonics, and the first scattering of all."""
 
 SURE_PASSES = 40
 """Passes after which what is left, such as twilight far darker than the day, is mixed by itself."""
@@ -90,21 +100,28 @@ def solve_light(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> Atmosphe
     dark = empty_field(scaled, grid.altitude, grid.sun_angle, ORDER)
     coarse_grid = coarsen_grid(grid, scaled.medium.r_bottom, COARSE_ORDER)
     coarse_rays, rays = trace_grid(scaled, coarse_grid), trace_grid(scaled, grid)
-    first, radiance_of_first = scatter_sunlight(atmosphere, grid, workers)
-    if has_aureole(atmosphere):
+    # Radiance itself is needed only for what peaks scatter across the horizon.
+    is_peaked = has_aureole(atmosphere)
+    of_first, radiance = (empty_radiance(scaled, grid) if is_peaked else None for _ in range(2))
+    first = scatter_sunlight(atmosphere, grid, workers, of_first)
+    workers.tell(SINGLE)
+    if is_peaked:
         aureole, bent = solve_aureole(atmosphere, grid, dark, workers)
         atmosphere, first = atmosphere._replace(aureole=aureole), sum_fields(first, bent, 1.0)
+        workers.tell(BENT)
 
     def settle(new: DiffuseField, total: DiffuseField) -> DiffuseField:
         return _settle(scaled, new, total, coarse_grid, coarse_rays, workers)
 
     new = lower_order(first, COARSE_ORDER)
     field = raise_order(settle(new, new), new, first)
-    scattered, _ = scatter_field(scaled, field, grid, rays, workers)
+    workers.tell(SETTLED)
+    scattered = scatter_field(scaled, field, grid, rays, workers)
+    workers.tell(SCATTERED)
     field = sum_fields(first, scattered, 1.0)
     mixing, unit = Anderson(scaled.mixture.size), _brightness(field)
-    for _ in range(MAX_PASSES):
-        scattered, radiance = scatter_field(scaled, field, grid, rays, workers)
+    for turn in range(MAX_PASSES):
+        scattered = scatter_field(scaled, field, grid, rays, workers, radiance)
         image = sum_fields(first, scattered, 1.0)
         total = lower_order(image, COARSE_ORDER)
         new = sum_fields(total, lower_order(field, COARSE_ORDER), -1.0)
@@ -112,10 +129,12 @@ def solve_light(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> Atmosphe
         image = raise_order(settled, new, image)
         field = _field(image, mixing.step(_state(field) / unit, _state(image) / unit) * unit)
         change = _relative(_state(settled) - _state(new), _state(total), grid)
+        # Each pass may be the last.
+        workers.tell(1.0 - (1.0 - SCATTERED) / (turn + 2.0))
         if change.max() < TOLERANCE:
-            if has_aureole(atmosphere):
+            if of_first is not None and radiance is not None:
                 # The field's moments are settled since, which changes the difference little.
-                radiance += radiance_of_first
+                radiance += of_first
                 peaks = solve_horizon_peaks(atmosphere, grid, radiance, workers)
                 atmosphere = atmosphere._replace(horizon_peaks=peaks)
             return atmosphere._replace(field=field)
@@ -139,7 +158,7 @@ def _settle(
     sunlit = wavelengths * np.count_nonzero(grid.sun_angle < 0.5 * math.pi)
     state, previous, left = start, 0.0, 0.0
     for turn in range(MAX_COARSE_PASSES):
-        scattered, _ = scatter_field(scaled, _field(new, state), grid, rays, workers)
+        scattered = scatter_field(scaled, _field(new, state), grid, rays, workers)
         image = start + _state(scattered)
         change = _relative(image - state, np.maximum(abs(image), abs(scale)), grid)
         if turn == 1:

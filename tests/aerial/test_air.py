@@ -11,7 +11,9 @@ from skybake.aerial.depth import Depths
 from skybake.aerial.froxels import air_by_froxels
 from skybake.aerial.sight import lens_of
 from skybake.aerial.to_space import dim_beyond
+from skybake.ephemeris.lit_moon import moon_by_hand
 from skybake.image.apart import evaluate_transmittance
+from skybake.image.moonlight import Moonlight
 from skybake.optics.changes import PresetChanges
 from skybake.preset import load_preset
 from skybake.projection.camera import camera_from_angles
@@ -106,13 +108,23 @@ def test_froxels_differ_by_less_than_a_percent():
     assert passing.max() < 3e-3
 
 
-def test_far_away_the_air_is_the_sky():
-    made, camera = scene(20.0, 0.1), camera_to(120.0, 25.0)
+def moonlit():
+    """A night with a half moon in the west."""
+    moon = moon_by_hand(
+        math.radians(270.0), math.radians(35.0), math.radians(90.0), math.pi, math.radians(-25.0)
+    )
+    return scene(-25.0, 0.1, moonlight=Moonlight(moon))
+
+
+@pytest.mark.parametrize("light", [lambda: scene(20.0, 0.1), moonlit], ids=["sun", "moon"])
+def test_far_away_the_air_is_the_sky(light):
+    made, camera = light(), camera_to(120.0, 25.0)
     far = Depths(np.full(SIZE[::-1], 5000.0, np.float32), 1.0, False)
     air = air_before(made, lens_of(camera, SIZE), far)
     window = (0, 0, *SIZE)
     sky = Behind(made, camera, SIZE, window).sky
     above = rays(camera)[..., 1] > 0.02
+    assert sky[above].min() > 0.0
     np.testing.assert_allclose(air.light[above], sky[above], rtol=3e-3)
 
 

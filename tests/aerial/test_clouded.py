@@ -26,7 +26,11 @@ WIDTH, HEIGHT = 12, 8
 
 def scene(altitude):
     settings = map_settings(
-        None, sun_elevation=math.radians(40.0), altitude=altitude, clouds_quality="draft"
+        None,
+        sun_elevation=math.radians(40.0),
+        altitude=altitude,
+        method="hillaire",
+        clouds_quality="draft",
     )
     return Scene(OVERCAST, settings)
 

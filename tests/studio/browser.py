@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 SETTLED = "#frame[data-state=settled]"
-LONGEST = 240_000  # ms, since the first picture may compile kernels
+LONGEST = 600_000  # ms, since the first picture may compile kernels
 
 needs_browser = pytest.mark.skipif(
     shutil.which("chromium") is None or find_spec("playwright") is None,
@@ -55,11 +55,15 @@ def chromium():
 
 
 class Tab:
-    """A tab with the page; `complaints` are what its console and its scripts complained of."""
+    """A tab with the page; `complaints` are what its console and its scripts complained of.
 
-    def __init__(self, browser, url, *, fragment="", size=(1000, 700)):
+    `keywords` are those of the browser's `new_context`.
+    """
+
+    def __init__(self, browser, url, *, fragment="", size=(1000, 700), **keywords):
         width, height = size
-        self.context = browser.new_context(viewport={"width": width, "height": height})
+        viewport = {"width": width, "height": height}
+        self.context = browser.new_context(viewport=viewport, **keywords)
         self.context.grant_permissions(["clipboard-read", "clipboard-write"])
         self.page = self.context.new_page()
         self.page.set_default_timeout(LONGEST)

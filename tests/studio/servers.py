@@ -30,6 +30,7 @@ solve = views.solve
 def held(scene, stage):
     if scene.planet.recipe != earth:
         stage(scenes.SOLVING, None)
+        scene.workers.tell(0.25)
         while not released.exists():
             try:
                 scene.workers.check()
@@ -58,7 +59,7 @@ class Server:
 
     def request(self, path, *, method="GET", body=None, token=True, headers=None):
         """Return status, headers and body of an answer."""
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=120)
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=600)
         given = {"X-Skybake-Token": self.token} if token else {}
         connection.request(method, path, body, given | (headers or {}))
         answer = connection.getresponse()
@@ -74,7 +75,7 @@ class Server:
     def end(self, number=signal.SIGINT):
         """Send a signal; returns exit status, the rest of stdout, and stderr."""
         self.process.send_signal(number)
-        output, errors = self.process.communicate(timeout=60)
+        output, errors = self.process.communicate(timeout=600)
         return self.process.returncode, output, errors
 
 
@@ -96,7 +97,7 @@ def serving(folder, *arguments, port=0, **keywords):
 
 def wait_until(condition):
     """Wait for what another process does."""
-    end = time.monotonic() + 240.0
+    end = time.monotonic() + 600.0
     while not condition():
         assert time.monotonic() < end
         time.sleep(0.02)

@@ -12,7 +12,7 @@ import pytest
 
 import skybake
 from tests.cli.runs import invoke
-from tests.studio.pages import LARGE, page_of, talk, view_of
+from tests.studio.pages import LARGE, LONGEST, page_of, talk, view_of
 from tests.studio.servers import HOLDING, RELEASED, STOPPED, serving, wait_until
 
 
@@ -176,7 +176,7 @@ def test_a_message_of_ten_megabytes_closes_its_socket_alone(server):
     async def conversation(page, other):
         with suppress(ConnectionError):  # hung up before all of it had come
             await page.socket.send_str("x" * 10_000_000)
-        message = await asyncio.wait_for(page.socket.receive(), 60)
+        message = await asyncio.wait_for(page.socket.receive(), LONGEST)
         return message.type, (await other.end(await other.ask()))[-1][0]
 
     kind, after = talk(server, conversation, pages=2)
@@ -190,6 +190,7 @@ def test_a_newer_request_takes_the_place_of_those_that_wait(holding):
     async def conversation(page):
         await page.ask(air)
         assert (await page.next())[0]["stage"] == "solving atmosphere"
+        assert (await page.next())[0]["progress"] == 0.25
         waiting = [await page.ask(air | {"sun": f"{20 + n}deg"}) for n in range(10)]
         newest = await page.ask(air | {"sun": "40deg"})
         overtaken = [(await page.next())[0] for _ in waiting]
@@ -234,15 +235,17 @@ def test_a_solution_says_so_and_gives_way_to_another_air(holding):
 
     async def conversation(page):
         slow = await page.ask({"preset": "titan"})
+        begun, _ = await page.next()
         answer, _ = await page.next()
         async with page_of(holding) as other:
             await other.end(await other.ask({"sun": "95deg"}))
         quick = await page.ask({"sun": "22deg"})
         cancelled = (await page.end(slow))[-1][0]
-        return answer, cancelled, (await page.end(quick))[-1][0]
+        return begun, answer, cancelled, (await page.end(quick))[-1][0]
 
-    answer, cancelled, after = talk(holding, conversation)
-    assert answer["stage"] == "solving atmosphere"
+    begun, answer, cancelled, after = talk(holding, conversation)
+    assert (begun["stage"], begun["progress"]) == ("solving atmosphere", None)
+    assert (answer["stage"], answer["progress"]) == ("solving atmosphere", 0.25)
     assert cancelled.get("cancelled"), "it was not at work any more"
     assert after.get("final"), after
 

@@ -82,6 +82,7 @@ def test_cancel_keeps_the_last_picture_and_the_page_goes_on(browser, tmp_path):
         tab.settle()
         before = tab.texels()
         tab.type("visibility", "17.3km")
+        tab.page.wait_for_function("() => document.getElementById('progress-share').value === 0.25")
         tab.page.click("#cancel")
         tab.page.wait_for_selector("#frame[data-state=cancelled]")
         np.testing.assert_array_equal(tab.texels(), before)

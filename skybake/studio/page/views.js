@@ -162,6 +162,6 @@ function legendOf(colour, stops) {
   const text = stops === 0 ? "grey" : stops > 0 ? `+${stops}` : String(stops);
   const entry = make("span", {}, text);
   entry.style.background = colour;
-  if (stops < -3) entry.style.color = "#fff";
+  if (stops < -3 || stops === 7) entry.style.color = "#fff";
   return entry;
 }
