@@ -44,6 +44,8 @@ class View(NamedTuple):
         Luminance of the zenith by lamps. [cd m⁻²]
     vision : str
         As of `skybake.image.vision`.
+    size : tuple of int
+        [pixel]
     """
 
     latitude: float
@@ -55,6 +57,7 @@ class View(NamedTuple):
     preset: str = "earth"
     city: float = 0.0
     vision: str = "camera"
+    size: tuple[int, int] = SIZE
 
 
 PARIS = View(48.86, 2.35, "2026-08-12T23:30Z", (60.0, 28.0, 80.0), 0.0, -5.5, city=3e-3)
@@ -67,6 +70,26 @@ VIEWS = (
     PARIS,
     PARIS._replace(vision="eye"),
 )
+
+SMALL = 440, 300
+CLOUDY = (
+    View(46.5, 8.0, "2026-02-01T18:45Z", (95.0, 22.0, 75.0), 0.0, -3.6, "earth-broken", size=SMALL),
+    View(
+        -24.6, -70.4, "2026-06-17T01:30Z", (140.0, 32.0, 85.0), 0.0, -9.5, "earth-fair", size=SMALL
+    ),
+    View(
+        48.86,
+        2.35,
+        "2026-08-12T23:30Z",
+        (60.0, 28.0, 80.0),
+        0.0,
+        -3.2,
+        "earth-broken",
+        3e-3,
+        size=SMALL,
+    ),
+)
+"""Clouds in the light of the Moon, before the Milky Way, and over a city."""
 
 MARS = View(-4.59, 137.44, "2026-11-26T05:20Z", (284.0, 27.0, 58.0), 0.0, -0.2, "mars")
 
@@ -83,6 +106,10 @@ def main() -> None:
         row, column = (height + GAP) * (i // 2), (width + GAP) * (i % 2)
         sheet[row : row + height, column : column + width] = picture(view)
     Image.fromarray(sheet).save(IMAGES / "night.jpg", quality=LOSSY)
+    row = [
+        np.pad(picture(each), ((0, 0), (0, GAP), (0, 0)), constant_values=255) for each in CLOUDY
+    ]
+    Image.fromarray(np.hstack(row)[:, :-GAP]).save(IMAGES / "night-clouds.jpg", quality=LOSSY)
     Image.fromarray(picture(MARS)).save(IMAGES / "night-mars.jpg", quality=LOSSY)
     Image.fromarray(contact_sheet()).save(IMAGES / "night-day.jpg", quality=LOSSY)
 
@@ -94,11 +121,13 @@ def picture(view: View) -> np.ndarray:
     moment = skybake.sun_at(view.time, place)
     bearing, elevation, width = map(math.radians, view.look)
     settings = skybake.map_settings(
-        skybake.Perspective(*SIZE, width, bearing, elevation),
+        skybake.Perspective(*view.size, width, bearing, elevation),
         altitude=view.altitude,
         sun_elevation=moment.sun_elevation,
         sun_azimuth=moment.sun_azimuth,
         night=skybake.Night(moment.celestial, is_refracted=moment.is_refracted, city=view.city),
+        moonlight=Moonlight(moment.lit_moon if view in CLOUDY else None),
+        clouds_quality="draft",
     )
     image = image_of_scene(skybake.Scene(skybake.load_preset(view.preset), settings))
     values: np.ndarray = code_values(image.pixels, image.encoding, view.ev, vision=view.vision)

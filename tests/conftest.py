@@ -14,6 +14,31 @@ os.environ.setdefault(
     "SKYBAKE_CACHE_DIR", str(Path(tempfile.gettempdir()) / f"skybake-tests-{os.getuid()}")
 )
 
+LONGEST = (
+    "clouds/test_fields.py",
+    "reference/test_cloudy.py",
+    "baking/test_preview.py",
+    "aerial/test_clouded.py",
+    "studio/test_page.py",
+    "eclipse/test_light.py",
+    "test_accuracy.py",
+    "sky/test_table.py",
+    "cloud_fields/test_shapes.py",
+    "baking/test_anchors.py",
+    "test_readme.py",
+    "reference/test_estimate.py",
+    "studio/test_live.py",
+    "cli/test_pictures.py",
+    "cli/test_processes.py",
+    "sequence/test_processes.py",
+    "sequence/test_dask.py",
+    "test_python_document.py",
+    "test_sequences_document.py",
+)
+"""Files that take longest, which begin first so that none of them ends alone. Of the first ones,
+which workers begin with, each needs other kernels."""
+
+
 # Kernels compile within the first example, and a run must not depend on luck.
 settings.register_profile("skybake", deadline=None, derandomize=True, database=None)
 settings.load_profile("skybake")
@@ -46,6 +71,13 @@ def pytest_cmdline_main(config):
         option.dist = "loadfile"
         # By number of tests, files of few long ones would come last and keep one CPU.
         option.loadscopereorder = False
+
+
+def pytest_collection_modifyitems(items):
+    """Put the longest files first; within a file the order stays."""
+    tests = Path(__file__).parent
+    places = {tests / name: place for place, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: places.get(item.path, len(places)))
 
 
 @pytest.fixture

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from skybake.aerial.air import Air, Depths, air_before
-from skybake.aerial.channels import Beauty, Channel, find_beauty, find_depth
+from skybake.aerial.air import Air, air_before
 from skybake.aerial.compose import Behind, through_air
-from skybake.aerial.depth import checked_depths
 from skybake.aerial.froxels import air_by_froxels
 from skybake.aerial.sight import lens_of
+from skybake.aerial.source import Source
+from skybake.aerial.to_space import dim_beyond
 from skybake.errors import InputError
-from skybake.formats.exr_layers import ExrPart, read_exr, write_exr
+from skybake.formats.exr_layers import write_exr
 from skybake.formats.targets import check_target
 from skybake.formats.whole_files import WholeFiles
 from skybake.image.recipe import recipe_hash
@@ -24,100 +23,7 @@ from skybake.image.scene import Scene
 from skybake.projection.camera import Camera
 
 METHODS = ("march", "froxel")
-DEPTH_KINDS = ("planar", "ray")
 SKIES = ("none", "fill")
-
-
-@dataclass(frozen=True, kw_only=True)
-class Reading:
-    """How the files of a renderer are read.
-
-    Attributes
-    ----------
-    layer : str or None
-        Of the light, see `find_beauty`.
-    depth_channel : str or None
-        See `find_depth`.
-    depth_kind : {"planar", "ray"}
-        Whether depths are along the camera's axis or along rays.
-    depth_unit : float
-        Length of 1 in the depths. [km]
-    depth_background : {"inf", "0"} or None
-        What depths that are none become, see `checked_depths`.
-    """
-
-    layer: str | None = None
-    depth_channel: str | None = None
-    depth_kind: str = "planar"
-    depth_unit: float = 1e-3
-    depth_background: str | None = None
-
-
-@dataclass(frozen=True, kw_only=True)
-class Source:
-    """What a renderer has written.
-
-    Attributes
-    ----------
-    path : Path
-        File of the light.
-    parts : list of ExrPart
-        All that it holds.
-    beauty : Beauty
-        Where the light is.
-    depths : Depths
-        How far what it shows is.
-    """
-
-    path: Path
-    parts: list[ExrPart]
-    beauty: Beauty
-    depths: Depths
-
-    @property
-    def part(self) -> ExrPart:
-        """The part that holds the light."""
-        return self.parts[self.beauty.part]
-
-
-def read_source(path: Path, depth: Path | None, reading: Reading) -> Source:
-    """Read the files of a renderer.
-
-    Parameters
-    ----------
-    path : Path
-        Of the light.
-    depth : Path or None
-        Of the depth, if it is another.
-    reading : Reading
-        How.
-
-    Raises
-    ------
-    InputError
-        If a file cannot be read, has no such channels, sizes differ, or a depth is no distance.
-    """
-    parts = read_exr(path)
-    beauty = find_beauty(path, parts, reading.layer)
-    where = path if depth is None else depth
-    others = parts if depth is None else read_exr(depth)
-    channel = find_depth(where, others, reading.depth_channel)
-    wide, high = parts[beauty.part].size
-    width, height = others[channel.part].size
-    if (width, height) != (wide, high):
-        raise InputError(
-            f"{where}: depth must be as large as {path}, {wide}x{high}, got {width}x{height}"
-        )
-    return Source(
-        path=path, parts=parts, beauty=beauty, depths=_depths(where, others, channel, reading)
-    )
-
-
-def _depths(path: Path, parts: list[ExrPart], channel: Channel, reading: Reading) -> Depths:
-    values = parts[channel.part].plane(channel.name)
-    unit = reading.depth_unit
-    given = path, channel.name, values, unit, reading.depth_background
-    return Depths(checked_depths(*given), unit, reading.depth_kind == "planar")
 
 
 def bake_aerial(
@@ -179,9 +85,12 @@ def bake_aerial(
         between = int(rows[0]), int(rows[-1]) + 1
         seen = Behind(scene, camera, part.size, part.window, between)
         if is_far.any():
+            sky = seen.sky
             # Where nothing shines, none of it passes.
-            shines = light[is_far].any()
-            sky = Air(seen.sky, seen.passing() if shines else np.ones_like(light))
+            if light[is_far].any():
+                dim_beyond(scene, lens, source.depths, air)
+                if scene.cloudscape is not None:
+                    air.passing[is_far] *= 1.0 - seen.hidden()[is_far, None]
         if is_thin.any():
             behind = seen.whole_sky()
     out = through_air(light, alpha, air, source.depths, sky, behind, scene.workers)

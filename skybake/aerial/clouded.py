@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from skybake.aerial.air import Air, Depths
+from skybake.aerial.air import Air
+from skybake.aerial.depth import Depths
 from skybake.aerial.sight import Lens
 from skybake.angles import zenith_azimuth
 from skybake.clouds.before import CloudsBefore

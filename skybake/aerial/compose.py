@@ -8,9 +8,10 @@ from functools import cached_property, partial
 import numpy as np
 import numpy.typing as npt
 
-from skybake.aerial.air import Air, Depths
+from skybake.aerial.air import Air
+from skybake.aerial.depth import Depths
 from skybake.image.layers import Pixels
-from skybake.image.raster import Raster, sky_pixels
+from skybake.image.raster import CHANNELS, Raster, sky_pixels
 from skybake.image.scene import Scene
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.projection.camera import Camera
@@ -26,7 +27,7 @@ def through_air(
     alpha: npt.NDArray[np.float32] | None,
     air: Air,
     depths: Depths,
-    sky: Air | None,
+    sky: Pixels | None,
     behind: Pixels | None,
     workers: Workers = ALL_CPUS,
 ) -> Pixels:
@@ -39,11 +40,11 @@ def through_air(
     alpha : ndarray of float32, shape (row, column), or None
         Coverage, 1 if None.
     air : Air
-        Up to finite distances.
+        Light up to finite distances, and what passes up to all distances.
     depths : Depths
         How far what is seen is.
-    sky : Air or None
-        Of all the air and the ground, without the sun's disc, for infinite depths.
+    sky : ndarray of float32, shape (row, column, 3), or None
+        Light of all the air and the ground, without the sun's disc, for infinite depths.
     behind : ndarray of float32, shape (row, column, 3), or None
         What is behind where coverage is less than 1.
     workers : Workers, optional
@@ -58,14 +59,11 @@ def through_air(
 
     def work(first: int, last: int) -> None:
         rows = slice(first, last)
-        whole = light, passing = air.light[rows], air.passing[rows]
+        light, passing = air.light[rows], air.passing[rows]
         depth = depths.values[rows]
         is_far = np.isinf(depth)
         if sky is not None and is_far.any():
-            light, passing = (
-                np.where(is_far[..., None], far[rows], near)
-                for far, near in zip(sky, whole, strict=True)
-            )
+            light = np.where(is_far[..., None], sky[rows], light)
         covered = np.float32(1.0) if alpha is None else alpha[rows, :, None]
         found = beauty[rows] * passing + covered * light
         is_here = depth == 0.0
@@ -136,12 +134,13 @@ class Behind:
         """Sky and ground, shape (row, column, 3)."""
         return self._of_bands(partial(sky_pixels, self._scene, self._chart))
 
-    def passing(self) -> Pixels:
-        """Share of light from space that passes the air, shape (row, column, 3)."""
-        return self._of_bands(partial(self._raster.band, "transmittance"))
+    def hidden(self) -> Pixels:
+        """Share of what is behind clouds that they hide, shape (row, column)."""
+        bands = self._of_bands(partial(self._raster.band, "apart"), len(CHANNELS["apart"]))
+        return bands[..., CHANNELS["apart"].index("A")]
 
-    def _of_bands(self, rows: Callable[[int, int], Pixels]) -> Pixels:
-        pixels = np.zeros((self._chart.height, self._chart.width, 3), np.float32)
+    def _of_bands(self, rows: Callable[[int, int], Pixels], channels: int = 3) -> Pixels:
+        pixels = np.zeros((self._chart.height, self._chart.width, channels), np.float32)
         for first in range(self._first, self._last, BAND):
             last = min(first + BAND, self._last)
             pixels[first:last] = rows(first, last)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +16,24 @@ FARTHEST = 1e6
 """Distance from which on nothing is there: some programs write 10^10 for that. [km]"""
 
 BACKGROUNDS = {"inf": np.inf, "0": 0.0}
+
+
+class Depths(NamedTuple):
+    """How far what pixels show is.
+
+    Attributes
+    ----------
+    values : ndarray of float32, shape (row, column)
+        At least 0; infinite where nothing is.
+    unit : float
+        Length of 1. [km]
+    is_planar : bool
+        Whether they are along the camera's axis rather than along rays.
+    """
+
+    values: Floats
+    unit: float
+    is_planar: bool
 
 
 def checked_depths(
@@ -47,4 +66,4 @@ def checked_depths(
                 f"{column}, row {row}; --depth-background says what that is"
             )
         values = np.where(is_wrong, np.float32(BACKGROUNDS[background]), values)
-    return np.where(values * unit >= FARTHEST, np.float32(np.inf), values).astype(np.float32)
+    return np.where(values * unit >= FARTHEST, np.float32(np.inf), values)

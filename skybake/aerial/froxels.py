@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from skybake.aerial.air import Air, Depths, look_up, volumes_for
+from skybake.aerial.air import Air, look_up, volumes_for
+from skybake.aerial.depth import Depths
 from skybake.aerial.sight import Lens
 from skybake.image.scene import Scene
 from skybake.jit.arguments import flatten
@@ -37,8 +38,8 @@ def air_by_froxels(scene: Scene, lens: Lens, depths: Depths) -> Air:
     step = max(math.log(farthest / nearest), 1e-6) / (SLICES - 1)
     distances = nearest * np.exp(step * np.arange(SLICES))
     even = [depths._replace(values=np.full(shape, each, np.float32)) for each in distances]
-    volumes = volumes_for(scene, coarse, [even[0], even[-1]])
-    slices = [look_up(scene, coarse, volumes, each) for each in even]
+    lights = volumes_for(scene, coarse, [even[0], even[-1]])
+    slices = [look_up(coarse, lights, each) for each in even]
     light = np.stack([each.light for each in slices])
     passing = np.stack([each.passing for each in slices])
     given = [flatten(each) for each in (depths.values, light, passing, *air)]

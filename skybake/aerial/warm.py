@@ -6,9 +6,11 @@ import math
 
 import numpy as np
 
-from skybake.aerial.air import Depths, air_before
+from skybake.aerial.air import air_before
+from skybake.aerial.depth import Depths
 from skybake.aerial.froxels import air_by_froxels
 from skybake.aerial.sight import lens_of
+from skybake.aerial.to_space import dim_beyond
 from skybake.image.scene import Scene
 from skybake.image.settings import MapSettings
 from skybake.preset import load_preset
@@ -21,4 +23,5 @@ def compile_air() -> None:
     lens = lens_of(camera_from_angles(0.0, 0.0, 0.0, math.pi / 3.0, 1.0), (4, 4))
     depths = Depths(np.full((4, 4), 5.0, np.float32), 1.0, True)
     for method in (air_before, air_by_froxels):
-        method(scene, lens, depths)
+        air = method(scene, lens, depths)
+    dim_beyond(scene, lens, depths, air)

@@ -160,7 +160,7 @@ def bands_of(scene: Scene) -> Bands:
     check_sensor(scene.planet, scene.settings)
     if sensor.is_polarised:
         what = "stokes" if sensor.stokes else "polarizer"
-        check_polarisation(scene.planet, scene.settings, what)
+        check_polarisation(scene.settings, what)
         if moon_lights_air(scene):
             raise InputError(f"{what}: needs a sky that the Moon does not light, got moonlight")
     seen = scene if sensor.response is None else camera_scene(scene, sensor.response)

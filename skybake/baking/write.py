@@ -287,7 +287,7 @@ def _bands(scene: Scene, picture: PictureSettings | None) -> Bands | None:
     if picture is not None and picture.show != "light":
         from skybake.image.polarised import check_polarisation
 
-        check_polarisation(scene.planet, scene.settings, "show")
+        check_polarisation(scene.settings, "show")
     if scene.settings.sensor.is_eye:
         return None
     from skybake.baking.bands import bands_of

@@ -17,7 +17,7 @@ from skybake.cloud_fields.patches import (
     room_within,
 )
 from skybake.cloud_fields.surface import surface_detail, surface_distance
-from skybake.jit.kernel import kernel
+from skybake.jit.kernel import inlined_kernel, kernel
 
 _LOWEST = 0.05
 """Share of the radius above the planet's centre from where on down a tile of voxels is not narrowed
@@ -141,7 +141,7 @@ def lone_patch(field, around):
     return east, north, room_within(field, other, a)
 
 
-@kernel
+@inlined_kernel
 def shared_place(field, around, x, y, altitude, blur, detail):
     """Find the nearest cloud at a place of the plane where several patches may have some.
 

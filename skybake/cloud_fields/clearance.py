@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skybake.cloud_fields.surface import AT_BASE
-from skybake.jit.kernel import kernel
+from skybake.jit.kernel import inlined_kernel, kernel
 
 
 def block_clearance(
@@ -74,7 +74,7 @@ def voxel_clearance(field, x, y, altitude):
     return _outside(field, altitude) or _of_block(field, x, y, altitude)
 
 
-@kernel
+@inlined_kernel
 def surface_clearance(field, x, y, altitude, blur, detail):
     """Distance from a point to where displacement and blur may carry the surface. [km]"""
     outside = _outside(field, altitude)

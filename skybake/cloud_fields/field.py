@@ -10,7 +10,7 @@ import numpy.typing as npt
 from skybake.cloud_fields.clearance import surface_clearance, voxel_clearance
 from skybake.cloud_fields.surface import surface_around, surface_detail, surface_extinction
 from skybake.cloud_fields.voxels import linear_extinction, voxel_extinction
-from skybake.jit.kernel import kernel
+from skybake.jit.kernel import inlined_kernel, kernel
 
 CONSTANT, LINEAR, SURFACE = 0, 1, 2
 """How values lie between nodes: voxels that are uniform, extinction that is linear between the
@@ -142,7 +142,7 @@ def detail_at(field, blur):
     return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
 
 
-@kernel
+@inlined_kernel
 def detailed_extinction(field, x, y, altitude, detail, erosion=0.0):
     """Extinction at one of several points whose blur is the same, see `extinction_at`. [km⁻¹]"""
     if field.kind == SURFACE:
@@ -152,7 +152,7 @@ def detailed_extinction(field, x, y, altitude, detail, erosion=0.0):
     return linear_extinction(field, x, y, altitude)
 
 
-@kernel
+@inlined_kernel
 def detailed_around(field, x, y, altitude, detail, erosion):
     """Return the extinction at a point and how far clouds are from it, see `surface_around`."""
     if field.kind == SURFACE:
@@ -160,7 +160,7 @@ def detailed_around(field, x, y, altitude, detail, erosion):
     return detailed_extinction(field, x, y, altitude, detail, erosion), 0.0
 
 
-@kernel
+@inlined_kernel
 def detailed_clearance(field, x, y, altitude, blur, detail):
     """Clearance with the detail of a blur, see `clearance_at`. [km]"""
     if field.kind == SURFACE:

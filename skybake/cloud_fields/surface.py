@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from skybake.cloud_fields.noise import BILLOW_SIZE
-from skybake.jit.kernel import kernel
+from skybake.jit.kernel import inlined_kernel, kernel
 
 STEP = 2.0**-14
 """Unit in which distances from a surface are stored. [km]"""
@@ -63,13 +63,13 @@ def surface_detail(field, blur):
     )
 
 
-@kernel
+@inlined_kernel
 def surface_extinction(field, x, y, altitude, detail, erosion=0.0):
     """Extinction at a point with the detail of a blur; others are as of `extinction_at`. [km⁻¹]"""
     return surface_around(field, x, y, altitude, detail, erosion)[0]
 
 
-@kernel
+@inlined_kernel
 def surface_around(field, x, y, altitude, detail, erosion):
     """Return the extinction at a point, and how far from it clouds are where there is none.
 
@@ -107,7 +107,7 @@ def surface_distance(field, x, y, altitude, detail):
     return node_distance(field, x * along_x * columns, y * along_y * rows, fz) - shift
 
 
-@kernel
+@inlined_kernel
 def _density(field, distance, x, y, altitude, detail):
     """Share of the full extinction at a point, at most 1; outside of clouds minus the distance.
 
@@ -159,7 +159,7 @@ def mean_shift(field, blur):
     return field.shift[i] + (f - i) * (field.shift[i + 1] - field.shift[i])
 
 
-@kernel
+@inlined_kernel
 def node_distance(field, fx, fy, fz):
     """Trilinear distance from the surface that is not displaced, at coordinates in nodes. [km]"""
     nodes = field.distance
@@ -178,7 +178,7 @@ def node_distance(field, fx, fy, fz):
     return STEP * (low + w * (high - low))
 
 
-@kernel
+@inlined_kernel
 def _between_rows(south, north, west, east, u, v):
     """Bilinear value of two rows of whole numbers."""
     a, b = np.int32(south[west]), np.int32(north[west])
@@ -192,7 +192,7 @@ def _amplitude(field, q, blur):
     return field.displacement[q, 0] * (1.0 - _FADES * blur * field.displacement[q, 5])
 
 
-@kernel
+@inlined_kernel
 def _noise(field, q, x, y, z):
     """Trilinear noise at a point, in [-1, 1]."""
     row, volume = field.displacement[q], field.noise

@@ -95,6 +95,11 @@ class ClearAir:
         self.radius = atmosphere.medium.r_bottom
         self.albedo = atmosphere.medium.ground_albedo
 
+    @property
+    def from_above(self) -> ClearAir:
+        """The same air with the light alone that comes from above it."""
+        return self
+
     def light_at(self, altitude: float, directions: Array, sun: Array) -> Light:
         """Light that arrives at a place above the feet, from unit vectors, shape (n, 3)."""
         mu, nu = directions[:, 2], directions @ sun
@@ -145,12 +150,7 @@ class ClearAir:
         Light over a ground of albedo A is L0 + c A / (1 - s A), where s is what the air returns
         of light from below; two albedos tell s by the irradiance E0 / (1 - s A) of the ground.
         """
-        dark, bright = self._grounds
-        sun = dark.field.sun_angle
-        noon = int(np.argmin(np.abs(sun - math.pi / 3.0)))
-        count = self.albedo.size
-        beam = 0.5 * self.sunlight(np.zeros(1), 0.5)[0]
-        down, more = (each.field.ground[noon, :count] + beam for each in (dark, bright))
+        down, more = self._irradiances
         returned = (more - down) / np.maximum(more * BRIGHT - down * self.albedo, 1e-300)
 
         def series(value: Array | float) -> Array:
@@ -159,6 +159,17 @@ class ClearAir:
         base = series(self.albedo)
         change: Array = (series(albedo) - base) / np.maximum(series(BRIGHT) - base, 1e-12)
         return np.where(BRIGHT - self.albedo > 1e-3, change, 0.0)
+
+    @cached_property
+    def _irradiances(self) -> tuple[Array, Array]:
+        """Of the ground under one light, where it is as it is and where it is bright."""
+        dark, bright = self._grounds
+        sun = dark.field.sun_angle
+        noon = int(np.argmin(np.abs(sun - math.pi / 3.0)))
+        count = self.albedo.size
+        beam = 0.5 * self.sunlight(np.zeros(1), 0.5)[0]
+        down, more = (each.field.ground[noon, :count] + beam for each in (dark, bright))
+        return down, more
 
     def over_bright(self, altitude: float, directions: Array, sun: Array) -> Array:
         """Light that a ground of albedo `BRIGHT` would add, shape (n, wavelength). [sr⁻¹]"""

@@ -155,7 +155,8 @@ def build_table(
         beyond = np.where(hits[:, None], 0.0, glow[:, -1] - glow[:, -2])
         glow[:, 1:] = glow[:, :1]
         glow[:, -1] += beyond
-    total = single[:, -1] + diffuse[:, -1] + ground
+    # In deep twilight light may be rounding, of either sign.
+    total = np.abs(single[:, -1]) + np.abs(diffuse[:, -1]) + np.abs(ground)
     scale = 1.0 / np.maximum(total, TINY)
     return AirTable(
         distance=distance,

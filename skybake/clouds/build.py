@@ -79,6 +79,7 @@ def build_cloudscape(
     quality: str = "normal",
     workers: Workers,
     keeps_light: bool = False,
+    air: ClearAir | None = None,
 ) -> Cloudscape | None:
     """Build what an observer sees of a world's clouds.
 
@@ -98,6 +99,8 @@ def build_cloudscape(
         Threads that do the work.
     keeps_light : bool, optional
         Whether light that is solved for is kept on disk, for other processes.
+    air : ClearAir, optional
+        What lights the clouds from all around in place of the sun, in the channels of `weights`.
 
     Returns
     -------
@@ -114,9 +117,12 @@ def build_cloudscape(
     if not fields:
         return None
     chosen = QUALITIES[quality]
-    layers = [_layer(layer, field, sky, weights, chosen, workers) for layer, field in fields]
-    air = ClearAir(sky.atmosphere, sky.source.angular_radius, workers, sky.table_method)
-    sun = sun_vector(sky.sun_azimuth, sky.sun_elevation)
+    sun = np.zeros(3) if air else sun_vector(sky.sun_azimuth, sky.sun_elevation)
+    layers = [_layer(*each, sky, sun, weights, chosen, workers) for each in fields]
+    if air is None:
+        air = ClearAir(sky.atmosphere, sky.source.angular_radius, workers, sky.table_method)
+    else:
+        weights = np.eye(weights.shape[1])
     given = layers, air, sky.altitude, sun, weights, chosen.depth, chosen.alike, workers
     return Cloudscape(*given, keeps_light=keeps_light)
 
@@ -125,6 +131,7 @@ def _layer(
     layer: CloudLayer,
     field: CloudField,
     sky: Sky,
+    sun: Array,
     weights: Array,
     quality: Quality,
     workers: Workers,
@@ -132,7 +139,6 @@ def _layer(
     middle = build_phase(layer.phase, np.array([MIDDLE]))[:, 0]
     share = weights / weights.sum(axis=0)
     phase = build_phase(layer.phase, sky.wavelengths) @ share
-    sun = sun_vector(sky.sun_azimuth, sky.sun_elevation)
     suns = len(suns_over(sun, sky.atmosphere.medium.r_bottom, sky.altitude, field.top))
     grid = _grid(field, quality, quality.voxels // suns, workers)
     if is_same_everywhere(grid.extinction):

@@ -27,6 +27,7 @@ from skybake.clouds.layer import SolvedLayer, channels_to_wavelengths
 from skybake.clouds.march import Marching
 from skybake.clouds.sight import Eye, dim_rays, light_rays
 from skybake.clouds.solve import nearest_sun, solve_layers
+from skybake.clouds.sunlit import sunlit_share
 from skybake.clouds.unlit import Layer
 from skybake.jit.arguments import flatten
 from skybake.jit.workers import Workers
@@ -64,7 +65,7 @@ class Cloudscape:
     altitude : float
         Of the observer. [km]
     sun : ndarray of float64, shape (3,)
-        Toward the sun: x east, y north, z up.
+        Toward the sun: x east, y north, z up; 0 where the air alone sends light.
     weights : ndarray of float64, shape (wavelength, channel)
         See `solve_layer`.
     depth : float
@@ -193,7 +194,7 @@ class Cloudscape:
                 depth=self.depth,
                 shortest=SHORTEST if is_surface else 0.2 * float(layer.grid.spacing[0]),
                 longest=0.5 * across,
-                taps=0 if is_deck else TAPS[not is_surface],
+                taps=0 if is_deck or not self.sun.any() else TAPS[not is_surface],
                 reach=REACH[not is_surface] * across,
                 pixel=pixel,
             )
@@ -211,6 +212,12 @@ class Cloudscape:
         if self._keeps_light:
             keep_light(self._key, KeptLight(self.solved, *made))
         return made
+
+    @cached_property
+    def sunlit_air(self) -> Floats:
+        """Light that the air scattered once, as `lit` at the nodes, see `sunlit_share`."""
+        rays, _ = self.node_rays
+        return self.lit(rays._replace(table=sunlit_share(rays.table)), self.dimming)[0]
 
     @cached_property
     def node_rays(self) -> tuple[AirRays, Array]:

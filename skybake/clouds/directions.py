@@ -14,9 +14,15 @@ EDGE = 1e-5
 
 
 def unit_vectors(zenith: Array, bearing: Array) -> Array:
-    """Return unit vectors of directions, shape (n, 3): x east, y north, z up."""
+    """Return unit vectors of directions, shape (..., 3): x east, y north, z up.
+
+    Angles are broadcast against each other.
+    """
+    out = np.empty((*np.broadcast_shapes(np.shape(zenith), np.shape(bearing)), 3))
     sine = np.sin(zenith)
-    return np.stack([sine * np.sin(bearing), sine * np.cos(bearing), np.cos(zenith)], axis=-1)
+    out[..., 0], out[..., 1] = sine * np.sin(bearing), sine * np.cos(bearing)
+    out[..., 2] = np.cos(zenith)
+    return out
 
 
 def sun_vector(azimuth: float, elevation: float) -> Array:

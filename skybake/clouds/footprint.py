@@ -63,6 +63,9 @@ def see_pixels(
     shows where it changes.
     """
     least = int(count)
+    if count == least:
+        _see_several(field, light, eye, directions, marching, out, workers, least, ends)
+        return
     has_more = _scattered(directions) < count - least
     for is_chosen, own in ((~has_more, least), (has_more, least + 1)):
         if is_chosen.all():

@@ -191,8 +191,14 @@ def directions_of(particles: Particles, sun: Array) -> tuple[Quadrature, float]:
 
 
 def shine(grid: Grid, fraction: float, sun: Array) -> tuple[Voxels, Floats]:
-    """Send the sun's beam through a layer; return its voxels and what leaves, shape (y, x)."""
+    """Send the sun's beam through a layer; return its voxels and what leaves, shape (y, x).
+
+    Without a sun nothing is in its shadow.
+    """
     extinction = grid.extinction * np.float32(1.0 - fraction)
+    if not sun.any():
+        beam = np.ones_like(extinction)
+        return Voxels(extinction, grid.spacing, beam, 1.0), beam[0]
     mean = np.empty_like(extinction)
     leaving = np.empty(extinction.shape[1:], np.float32)
     ray, met = np.empty_like(leaving), np.empty_like(leaving)
@@ -259,15 +265,19 @@ def enter(
     down = quadrature.flux(clear[0, 0].sum(axis=0) @ weights)
     slope = max(float(sun[2]), 0.0)
     down_sun = slope * (air.sunlight(np.array([grid.base]), float(sun[2])) @ weights)[0]
+    straight = below.single @ weights
     brighter = np.ones_like(down)
     if around.ground is not None:
         up = quadrature.flux((below.single + below.diffuse) @ weights)
         brighter = around.ground * (down + down_sun) / np.maximum(up, 1e-300)
+        if not sun.any():
+            # What the ground sends by itself passes the layers beneath.
+            straight = straight * (1.0 - around.ground)
     return Entering(
         sun=(air.sunlight(grid.levels, float(sun[2])) @ weights * around.sun_share).T,
         above=(sky @ weights * around.sky_ratio).T,
         below=(below.diffuse @ weights * brighter).T,
-        below_lit=(below.single @ weights).T,
+        below_lit=straight.T,
         down=down,
         down_sun=down_sun,
         sun_share=around.sun_share,

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from skybake.jit.kernel import kernel
+from skybake.jit.kernel import inlined_kernel, kernel
 from skybake.optics.medium import Array
 
 FAINTEST = 1e-30
@@ -66,7 +66,7 @@ def half_words(values: npt.NDArray[np.float32]) -> npt.NDArray[np.uint16]:
     return upper
 
 
-@kernel
+@inlined_kernel
 def _single(half_word):
     """Return the number whose upper half is given."""
     return np.int32(np.int32(half_word) << np.int32(16)).view(np.float32)
@@ -85,7 +85,7 @@ def sun_share(light, mu_s):
     return i + min(max(share, 0.0), 1.0 - 1e-9)
 
 
-@kernel
+@inlined_kernel
 def fill_corners(light, x, y, altitude, corner, weight):
     """Write indices of the eight voxels around a point, (8, 3) as z, y, x, and their weights."""
     _, levels, rows, columns = light.beam.shape
@@ -107,7 +107,7 @@ def fill_corners(light, x, y, altitude, corner, weight):
         weight[n] *= u if n & 1 else 1.0 - u
 
 
-@kernel
+@inlined_kernel
 def sun_depth(light, place, corner, weight):
     """Optical depth toward the sun between voxels, without forward peaks.
 
@@ -126,7 +126,7 @@ def sun_depth(light, place, corner, weight):
     return -math.log(max(total, FAINTEST))
 
 
-@kernel
+@inlined_kernel
 def fill_diffuse(light, place, corner, weight, toward, scratch, out):
     """Write the diffuse light that is scattered toward the eye at a point, by channel.
 

@@ -20,8 +20,11 @@ from skybake.cloud_fields.chart import (
 from skybake.cloud_fields.field import detail_at, detailed_around, detailed_clearance
 from skybake.clouds.particles import TERMS
 from skybake.clouds.source import fill_source, prepare_ray
-from skybake.jit.kernel import kernel
+from skybake.jit.kernel import inlined_kernel, kernel
 from skybake.optics.medium import Array
+from skybake.transport.exponential import fast_exp
+
+NOT_PREPARED = -1.0
 
 FARTHEST = 600.0
 """Length of a ray within a layer, beyond which it is not followed. [km]"""
@@ -40,6 +43,9 @@ SIMILAR = 1.02
 
 LEVELS = 12
 """Steps in which a ray crosses a layer at least."""
+
+NEAR = 2.0
+"""Shortest steps within which there are clouds, so that it is not looked up how far they are."""
 
 THINNEST = 0.02
 """Extinction below which there is no cloud. [km⁻¹]"""
@@ -151,20 +157,21 @@ def fill_march(
         end = min(_exit(radius, altitude, dz, field.base, field.top, begin), ends[n])
         if end <= begin:
             continue
-        place = prepare_ray(light, radius, altitude, directions[n], sun, begin, scratch)
         # Farther from the observer the plane is stretched more.
         far = end * dx, end * dy, altitude + end * dz
         stretch = chart_stretch(field, radius, far[0], far[1], far[2])
         # Up to where one patch alone has clouds.
         alone = east = north = 0.0
         is_lone, row, column = True, 0, 0
-        passes, depth = 1.0, 0.0
+        passes, depth, place = 1.0, 0.0, NOT_PREPARED
         weighted = total = due = 0.0
-        share, is_new = 1.0, True
+        share, is_new, is_near = 1.0, True, False
         known, detail = begin * marching.pixel, detail_at(field, begin * marching.pixel)
         at = begin
         # However coarse pixels are, a ray sees the layer at several heights.
-        coarsest = (field.top - field.base) / LEVELS / max(abs(scratch.local[0, 2]), 1e-6)
+        coarsest = (
+            (field.top - field.base) / LEVELS / max(_slope(radius, altitude, dz, begin), 1e-6)
+        )
         shortest = marching.shortest + min(at * marching.pixel, coarsest)
         step = shortest
         while at < end:
@@ -189,35 +196,44 @@ def fill_march(
                 alone = middle + room / stretch
             room = max(alone - middle, 0.0)
             shortest = marching.shortest + min(blur, coarsest)
-            clear = detailed_clearance(field, x + east, y + north, h, blur, detail) / stretch
-            clear = min(clear, room)
-            if clear > 0.5 * shortest:
-                _add(scratch.source, due, seen[n])
-                due, is_new = 0.0, True
-                at = max(middle + clear, at + shortest)
-                step = shortest
-                continue
+            if not is_near:
+                clear = detailed_clearance(field, x + east, y + north, h, blur, detail) / stretch
+                clear = min(clear, room)
+                if clear > 0.5 * shortest:
+                    _add(scratch.source, due, seen[n])
+                    due, is_new = 0.0, True
+                    at = max(middle + clear, at + shortest)
+                    step = shortest
+                    continue
             erosion = 0.0
             if not is_lone:
                 erosion = erosion_in(field, shares_around(field, x, y), row, column)
             x, y = x + east, y + north
             extinction, free = detailed_around(field, x, y, h, detail, erosion)
             if extinction < THINNEST:
-                at = max(middle + min(free / stretch, room), at + step)
+                leap = min(free / stretch, room)
+                is_near = 0.0 < leap < NEAR * shortest
+                if leap > 0.5 * shortest:
+                    _add(scratch.source, due, seen[n])
+                    due, is_new = 0.0, True
+                at = max(middle + leap, at + step)
                 step = shortest
                 continue
+            is_near = True
             scaled = extinction * keep
             if scaled * step > 1.6 * marching.depth and step > 1.01 * shortest:
                 step = max(marching.depth / scaled, shortest)
                 continue
-            stops = 1.0 - math.exp(-scaled * step)
+            stops = 1.0 - fast_exp(-scaled * step)
             weight = passes * stops
             if is_new or passes > BRIGHT or due >= SHARED:
                 # Light between two looks is the mean of both.
                 _add(scratch.source, 0.5 * due, seen[n])
+                if place == NOT_PREPARED:
+                    place = prepare_ray(light, radius, altitude, directions[n], sun, begin, scratch)
                 to_eye = depth + 0.5 * extinction * step
                 fill_source(
-                    field, light, marching, place, x, y, h, detail, erosion, to_eye, scratch
+                    field, light, marching, place, x, y, h, blur, detail, erosion, to_eye, scratch
                 )
                 _add(scratch.source, 0.5 * due + weight, seen[n])
                 due, is_new = 0.0, False
@@ -242,10 +258,18 @@ def fill_march(
         through[n, 2] = weighted / total if total > 0.0 else 0.0
 
 
-@kernel
+@inlined_kernel
 def _add(source, weight, out):
     for c in range(source.size):
         out[c] += weight * source[c]
+
+
+@kernel
+def _slope(radius, altitude, dz, distance):
+    """Cosine of the angle between a ray and the vertical at a distance, without its sign."""
+    above = radius + altitude
+    r = math.sqrt(distance * distance + above * (above + 2.0 * distance * dz))
+    return abs(distance + above * dz) / r
 
 
 @kernel

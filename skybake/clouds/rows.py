@@ -26,6 +26,9 @@ _COARSEST = 0.004
 _ROWS = 4
 """Rows that a thread takes at a time."""
 
+_BLOCK = 16, 64
+"""Rows and columns of pixels that are seen one after the other: they see the same clouds."""
+
 See = Callable[[npt.NDArray[np.intp]], tuple[Floats, Floats]]
 
 
@@ -60,11 +63,12 @@ def see_rows(
     Pixels depend on their row alone: maps may be made in bands.
     """
     rows, columns = extent.shape
-    every = np.arange(rows * columns).reshape(rows, columns)
     if columns < 3 or tolerance <= 0.0:
-        return see(every.ravel())
-    first = np.unique(np.append(np.arange(0, columns, 2), columns - 1))
-    at = every[:, first].ravel()
+        return see(np.arange(rows * columns))
+    order = _by_blocks(rows, columns)
+    is_first = np.zeros((rows, columns), np.bool_)
+    is_first[:, ::2] = is_first[:, -1] = True
+    at = order[is_first.ravel()[order]]
     some_seen, some_passing = see(at)
     layers, _, channels = some_seen.shape
     seen = np.empty((layers, rows * columns, channels), np.float32)
@@ -77,9 +81,21 @@ def see_rows(
         fill_between(*flat, tolerance, begin, end, seen, passing, is_due)
 
     workers.run_rows(rows, work, chunk=_ROWS)
-    rest = np.flatnonzero(is_due)
+    rest = order[is_due[order]]
     seen[:, rest], passing[:, rest] = see(rest)
     return seen, passing
+
+
+def _by_blocks(rows: int, columns: int) -> npt.NDArray[np.intp]:
+    """Return the numbers of all pixels block by block."""
+    every = np.arange(rows * columns).reshape(rows, columns)
+    high, wide = _BLOCK
+    blocks = [
+        every[j : j + high, i : i + wide].ravel()
+        for j in range(0, rows, high)
+        for i in range(0, columns, wide)
+    ]
+    return np.concatenate(blocks)
 
 
 @kernel

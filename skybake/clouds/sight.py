@@ -20,7 +20,7 @@ from skybake.optics.medium import Array
 
 Floats = npt.NDArray[np.float32]
 
-RAYS = 2048
+RAYS = 512
 """Rays that a thread takes at a time."""
 
 

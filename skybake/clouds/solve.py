@@ -38,7 +38,9 @@ def solve_layers(
     reflects: list[Array] = []
     for layer, particle in zip(reversed(layers), reversed(particles), strict=True):
         beneath = reflects[-1] if reflects else None
-        reflects.append(reflectance_of(layer.grid, particle, air, weights, sun, beneath, workers))
+        above = air.from_above
+        ratio = reflectance_of(layer.grid, particle, above, weights, sun, beneath, workers)
+        reflects.append(ratio)
     reflects.reverse()
     out: list[SolvedLayer] = []
     sun_share = sky_ratio = np.ones(weights.shape[1])

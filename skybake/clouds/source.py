@@ -8,7 +8,8 @@ from skybake.cloud_fields.field import detailed_extinction
 from skybake.clouds.harmonics import fill_harmonics
 from skybake.clouds.light import fill_corners, fill_diffuse, sun_depth, sun_share
 from skybake.clouds.particles import DEEPEST, TERMS
-from skybake.jit.kernel import kernel
+from skybake.jit.kernel import inlined_kernel, kernel
+from skybake.transport.exponential import fast_exp
 
 DARK = 7.0
 """Optical depth toward the sun, without forward peaks, beyond which its rest does not matter."""
@@ -58,8 +59,8 @@ def prepare_ray(light, radius, altitude, direction, sun, distance, scratch):
     return sun_share(light, scratch.local[1, 2])
 
 
-@kernel
-def fill_source(field, light, marching, place, x, y, h, detail, erosion, to_eye, scratch):
+@inlined_kernel
+def fill_source(field, light, marching, place, x, y, h, blur, detail, erosion, to_eye, scratch):
     """Write what a point sends to the eye, of the sun and of diffuse light, by its opacity.
 
     Parameters
@@ -68,14 +69,16 @@ def fill_source(field, light, marching, place, x, y, h, detail, erosion, to_eye,
         As of `skybake.clouds.march.fill_march`.
     place : float
         Of `prepare_ray`.
-    x, y, h, detail, erosion
-        As of `skybake.cloud_fields.field.detailed_extinction`.
+    x, y, h, blur, detail, erosion
+        As of `skybake.cloud_fields.field.detailed_clearance` and `detailed_extinction`.
     to_eye : float
         Optical depth of all particles up to the eye, those of peaks included.
     scratch : MarchScratch
         Whose `source` receives it, by channel.
     """
-    toward_sun = _depth_to_sun(field, light, marching, place, x, y, h, detail, erosion, scratch)
+    toward_sun = _depth_to_sun(
+        field, light, marching, place, x, y, h, blur, detail, erosion, scratch
+    )
     fill_diffuse(
         light,
         place,
@@ -87,8 +90,8 @@ def fill_source(field, light, marching, place, x, y, h, detail, erosion, to_eye,
     )
     keep = 1.0 - light.fraction
     to_sun = toward_sun / keep
-    sharp = math.exp(-light.fraction * (to_sun + to_eye)) / keep
-    beam = math.exp(-toward_sun)
+    sharp = fast_exp(-light.fraction * (to_sun + to_eye)) / keep
+    beam = fast_exp(-toward_sun)
     series = min(to_sun, DEEPEST)
     fz = (h - light.base) / light.spacing[0] - 0.5
     for c in range(scratch.source.size):
@@ -99,8 +102,8 @@ def fill_source(field, light, marching, place, x, y, h, detail, erosion, to_eye,
         scratch.source[c] += lit * (scratch.truncated[c] + sharp * peak)
 
 
-@kernel
-def _depth_to_sun(field, light, marching, place, x, y, h, detail, erosion, scratch):
+@inlined_kernel
+def _depth_to_sun(field, light, marching, place, x, y, h, blur, detail, erosion, scratch):
     """Optical depth toward the sun without forward peaks; leaves the point's own corners."""
     corner, weight = scratch.corner, scratch.weight
     if marching.taps == 0:
@@ -112,17 +115,19 @@ def _depth_to_sun(field, light, marching, place, x, y, h, detail, erosion, scrat
     fill_corners(light, x + s * east, y + s * north, h + s * up, corner, weight)
     depth = sun_depth(light, place, corner, weight)
     if depth < DARK:
-        near = 0.0
-        for q in range(marching.taps):
-            s = marching.reach * (q + 0.5) / marching.taps
+        # Where details are left out, samples need not be nearer to each other than these.
+        taps = min(marching.taps, max(math.ceil(marching.reach / max(blur, 1e-6)), 2))
+        near, apart = 0.0, marching.reach / taps
+        for q in range(taps):
+            s = apart * (q + 0.5)
             px, py, pz = x + s * east, y + s * north, h + s * up
             near += detailed_extinction(field, px, py, pz, detail, erosion)
-        depth += near * marching.reach / marching.taps * (1.0 - light.fraction)
+        depth += near * apart * (1.0 - light.fraction)
     fill_corners(light, x, y, h, corner, weight)
     return depth
 
 
-@kernel
+@inlined_kernel
 def _irradiance(light, place, fz, channel):
     """Irradiance by the sun between levels and suns."""
     levels = light.irradiance.shape[1]

@@ -26,7 +26,7 @@ def suns_over(sun: Array, radius: float, altitude: float, top: float) -> Array:
     Parameters
     ----------
     sun : ndarray of float64, shape (3,)
-        Toward the sun: x east, y north, z up at the observer.
+        Toward the sun: x east, y north, z up at the observer; 0 where there is none.
     radius, altitude, top : float
         Of the ground; of the observer and of the highest clouds above it. [km]
 
@@ -36,6 +36,8 @@ def suns_over(sun: Array, radius: float, altitude: float, top: float) -> Array:
         Where clouds are far away the sun stands higher or lower by their angle at the planet's
         centre, which counts while it is low.
     """
+    if not sun.any():
+        return sun[None]
     elevation = math.asin(float(np.clip(sun[2], -1.0, 1.0)))
     away = sum(math.acos(radius / (radius + max(h, GROUNDED))) for h in (top, altitude))
     low, high = max(elevation - away, -0.5 * math.pi), min(elevation + away, 0.5 * math.pi)

@@ -94,7 +94,7 @@ class CameraResponse:
                 f"{'RGB'[int(lost.argmax())]} beyond"
             )
         return folding_weights(
-            wavelengths, star_wavelengths, star_irradiance, self.curves * self._gains, 1.0
+            wavelengths, star_wavelengths, star_irradiance, self.scaled_curves, 1.0
         )
 
     @property
@@ -110,6 +110,11 @@ class CameraResponse:
         return np.stack(
             [np.interp(nodes, own, each, left=0.0, right=0.0) for each in values.T], axis=1
         )
+
+    @property
+    def scaled_curves(self) -> Array:
+        """As `curves`, in the scale of `weights`. [lm W⁻¹]"""
+        return self.curves * self._gains
 
     @property
     def _gains(self) -> Array:

@@ -6,6 +6,7 @@ import json
 import math
 import time
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,6 +24,11 @@ from skybake.commands.options.camera import (
 )
 from skybake.commands.options.clouds import check_clouds, clouds_options
 from skybake.commands.options.maps import given_settings, map_options
+from skybake.commands.options.moonlight import (
+    moonlight_from_options,
+    moonlight_needs,
+    moonlight_options,
+)
 from skybake.commands.options.observer import (
     altitude_option,
     positions,
@@ -38,7 +44,7 @@ from skybake.commands.printing.notices import announce_kernels, notice, warn
 from skybake.errors import InputError
 
 if TYPE_CHECKING:
-    from skybake.aerial.bake import Reading, Source
+    from skybake.aerial.source import Reading, Source
     from skybake.projection.camera import Camera
 
 _SUN = ("sun_disc", "sun_size", "sun_soft", "sun_strength")
@@ -132,6 +138,13 @@ _EXR = values.with_suffix(".exr")
 @sun_azimuth_option()
 @moment_options
 @sun_distance_option()
+@click.option(
+    "--moon",
+    type=click.Choice(choices.MOONS_IN_AIR),
+    show_default="include, with --time",
+    help="Whether moonlight is in the air.",
+)
+@moonlight_options()
 @altitude_option()
 @clouds_options()
 @click.option(
@@ -168,10 +181,12 @@ def aerial(**options: Any) -> None:
     context = click.get_current_context()
     is_timed = options["time"] is not None
     fills = options["sky"] == "fill"
+    by_moon = {**options, "night": None}
     check_needs(
         context,
         moment_needs(context),
         sun_distance_needs(options, is_timed=is_timed, time="--time"),
+        moonlight_needs(by_moon, is_timed=is_timed, time="--time"),
         {
             "units": (options["ev"] is None, "cannot be combined with --ev"),
             **dict.fromkeys(_SUN, (fills, "needs --sky fill")),
@@ -182,33 +197,45 @@ def aerial(**options: Any) -> None:
     moment = moment_from_options(context)
     where = positions(options, moment)
 
-    from skybake.aerial.bake import bake_aerial, read_source
-    from skybake.baking import late_kernels
-    from skybake.image import settings as image_settings
-    from skybake.image.scene import Scene
-    from skybake.image.sun_distance import sun_distance
-    from skybake.image.uneclipsed import check_uneclipsed
+    from skybake.aerial.source import read_source
 
-    planet = world_from_options(context)
-    check_clouds(context, planet)
-    if not options["quiet"]:
-        announce_kernels()
-    source = read_source(options["beauty"], options["depth"], _reading(options))
+    # Files are unpacked while the rest of the program is loaded.
+    with ThreadPoolExecutor(1) as thread:
+        given = options["beauty"], options["depth"], _reading(options)
+        reading = thread.submit(read_source, *given)
+
+        from skybake.aerial.bake import bake_aerial
+        from skybake.baking import late_kernels
+        from skybake.image import settings as image_settings
+        from skybake.image.scene import Scene
+        from skybake.image.sun_distance import sun_distance
+        from skybake.image.uneclipsed import check_uneclipsed
+
+        planet = world_from_options(context)
+        check_clouds(context, planet)
+        if not options["quiet"]:
+            announce_kernels()
+        source = reading.result()
     camera = _camera(options, source)
     where["altitude"] = altitude_with(camera, where["altitude"])
     try:
-        settings = image_settings.map_settings(None, **_scale(options, source), **where)
+        settings = image_settings.map_settings(
+            None,
+            **_scale(options, source),
+            **where,
+            moonlight=moonlight_from_options(by_moon, moment, where),
+        )
     except InputError as error:
         raise click.UsageError(f"--{error}") from error
     distance = sun_distance(planet, moment, options["sun_distance"])
     settings = replace(settings, lighting=replace(settings.lighting, sun_distance=distance))
     check_uneclipsed(planet, settings, moment)
-    if settings.lighting.sun_elevation < NIGHT:
-        warn(
-            "sun is more than 18 degrees below the horizon: the air is dark, as the light of moon "
-            "and night is not in it"
-        )
     scene = Scene(planet, settings)
+    if settings.lighting.sun_elevation < NIGHT and scene.moonlit is None:
+        warn(
+            "sun is more than 18 degrees below the horizon: the air is dark, as the night's own "
+            "light is not in it, and no Moon shines"
+        )
     if not options["quiet"] and not scene.sky.is_solved:
         notice("solving for the light in this atmosphere, once")
     with late_kernels.compiled_in_background():
@@ -222,7 +249,7 @@ def aerial(**options: Any) -> None:
 
 
 def _reading(options: Mapping[str, Any]) -> Reading:
-    from skybake.aerial.bake import Reading
+    from skybake.aerial.source import Reading
     from skybake.projection.camera_file import UNITS
 
     return Reading(

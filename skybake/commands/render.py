@@ -85,7 +85,7 @@ class RequestedMap(NamedTuple):
 @moment_options
 @sun_distance_option()
 @moon_options("--time")
-@moonlight_options
+@moonlight_options()
 @altitude_option()
 @night_options
 @lst_option

@@ -21,7 +21,12 @@ from skybake.commands.options.emit import (
     is_asked,
 )
 from skybake.commands.options.maps import map_needs, map_options, map_settings
-from skybake.commands.options.moonlight import moonlight_needs, moonlight_of_sequence
+from skybake.commands.options.moonlight import (
+    moon_path_from_options,
+    moonlight_needs,
+    moonlight_of_sequence,
+    moonlight_options,
+)
 from skybake.commands.options.night import (
     is_scale_open,
     night_from_options,
@@ -69,6 +74,7 @@ SOME_FAILED = 3
 @span_options
 @sun_distance_option()
 @moon_options("--from and --to")
+@moonlight_options(is_range=True)
 @altitude_option(is_range=True)
 @night_options
 @clouds_options(is_range=True)
@@ -145,8 +151,8 @@ SOME_FAILED = 3
 def sequence(**options: Any) -> None:
     """Bake a sky map for each frame of a day, a climb or a change of the atmosphere.
 
-    A range A..B runs evenly from the first frame to the last; --sun, --sun-azimuth, --altitude and
-    numbers in --set can have one. With --from and --to the sun follows its path at a place.
+    A range A..B runs evenly from the first frame to the last; places of sun and Moon, --altitude
+    and numbers in --set can have one. With --from and --to the sun follows its path at a place.
 
     \b
     Examples:
@@ -258,6 +264,7 @@ def _plan_from_options(context: click.Context) -> Plan:
             settings=settings,
             exposure_curve=options["exposure_curve"],
             cloud_time=options["cloud_time"],
+            moon_path=moon_path_from_options(options),
             output=options["output"],
             preview=options["preview"] == BESIDE or options["preview"] or False,
             night_scale=is_scale_open(options) and options["exposure_curve"] is None,

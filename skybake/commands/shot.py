@@ -74,7 +74,7 @@ _STORED = (
 @moment_options
 @sun_distance_option()
 @moon_options("--time")
-@moonlight_options
+@moonlight_options()
 @altitude_option()
 @night_options
 @lst_option

@@ -33,8 +33,7 @@ def evaluate_apart(
     clear = scene.evaluate_clear(zenith, azimuth, footprint)
     if scene.cloudscape is None:
         return np.concatenate([clear, clear, np.zeros_like(clear[..., :1])], axis=2)
-    over = scene.clouds_over(scene.cloudscape)
-    clouded, hidden = over.apart(clear.copy(), zenith, azimuth, footprint)
+    clouded, hidden = scene.evaluate_clouded(zenith, azimuth, footprint)
     return np.concatenate([clear, clouded, hidden[..., None]], axis=2)
 
 

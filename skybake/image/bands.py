@@ -9,20 +9,23 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from skybake.colour.camera import CameraResponse
+from skybake.colour.response import CameraChannels, Response, Wavelengths
 from skybake.errors import InputError
 from skybake.image.scene import Scene
 from skybake.image.settings import MapSettings
-from skybake.image.stages import Stages
+from skybake.image.shared_stages import SharedStages, SpectralStages
 from skybake.optics.medium import Array
 from skybake.optics.spectrum import hat_means, star_spectrum
 from skybake.preset import Planet
 from skybake.sky.disc import Disc
 from skybake.sky.drawn_disc import DrawnDisc
 from skybake.sky.sky import Sky
-from skybake.sky.spectral_table import SpectralTable
 
 if TYPE_CHECKING:
-    from skybake.sky.stokes_table import StokesTable
+    from skybake.image.moonlit import Moonlit
+    from skybake.image.night_glow import NightGlow
+    from skybake.night.air import NightAir
+    from skybake.night.stars import Stars
 
 CHANNELS = 3
 
@@ -33,7 +36,7 @@ def check_sensor(planet: Planet, settings: MapSettings) -> None:
     Raises
     ------
     InputError
-        Of a world of three wavelengths, clouds, or lights of the night.
+        Of a world of three wavelengths.
     """
     sensor = settings.sensor
     if sensor.wavelengths is None and sensor.response is None:
@@ -41,11 +44,6 @@ def check_sensor(planet: Planet, settings: MapSettings) -> None:
     what = "camera" if sensor.wavelengths is None else "spectral"
     if planet.rendering != "spectral":
         raise InputError(f"{what}: needs a preset of rendering spectral, got {planet.rendering}")
-    if sensor.wavelengths is not None and not all(layer.is_empty for layer in planet.clouds):
-        raise InputError(
-            f"{what}: needs a world without clouds, whose light is known in three channels, "
-            f"got {len(planet.clouds)} layers"
-        )
 
 
 class BandScene(Scene):
@@ -54,40 +52,74 @@ class BandScene(Scene):
     Parameters
     ----------
     scene : Scene
-        The same for an eye.
+        The same for an eye, which judges what is seen.
     sky : Sky
         Its sky, at the wavelengths of the sums.
+    response : Response
+        How channels respond to light.
     weights : ndarray of float64, shape (wavelength, 3)
         Values of channels are the radiance per unit irradiance times these.
-    stages : Stages
+    stages : SharedStages
         What makes tables of the sky.
     """
 
-    def __init__(self, scene: Scene, sky: Sky, weights: Array, stages: Stages) -> None:
+    def __init__(
+        self, scene: Scene, sky: Sky, response: Response, weights: Array, stages: SharedStages
+    ) -> None:
         # Channels stand in the place of X, Y and Z, which no matrix mixes.
         encoding = replace(scene.settings.encoding, colorspace="xyz", units="nits", ev=None)
         settings = replace(scene.settings, encoding=encoding)
         super().__init__(scene.planet, settings, scene.workers, stages, sky)
-        self._seen, self._weights = scene, weights
+        self._seen, self._response, self._weights = scene, response, weights
+        self._shared = stages
+
+    @property
+    def response(self) -> Response:
+        """How its three channels respond to light."""
+        return self._response
 
     @property
     def xyz_weights(self) -> Array:
         """Values of channels are the radiance per unit irradiance times these."""
         return self._weights
 
-    # Lights of the night are known to an eye alone, which has judged that there are none.
+    @cached_property
+    def is_sunless(self) -> bool:
+        """Whether no light of the sun is seen by an eye."""
+        return self._seen.is_sunless
 
-    @property
-    def stars(self) -> None:
-        """No stars."""
+    @cached_property
+    def stars(self) -> Stars | None:
+        """The stars that an eye sees."""
+        return None if self._seen.stars is None else self._shared.stars(self)
 
-    @property
-    def night_glow(self) -> None:
-        """No light between the stars."""
+    @cached_property
+    def night_glow(self) -> NightGlow | None:
+        """The light between the stars that an eye sees."""
+        frame = self.settings.night.frame
+        if self._seen.night_glow is None or frame is None:
+            return None
+        from skybake.image.night_glow import glow_over
 
-    @property
-    def moonlit(self) -> None:
-        """No Moon."""
+        return glow_over(self, frame)
+
+    def night_air(self, *, has_airglow: bool, has_city: bool) -> NightAir:
+        """Return what of the night over the observer no hour changes."""
+        own = self._shared.night_air(self.sky, has_airglow=has_airglow, has_city=False)
+        city = None
+        if has_city:
+            city = self._seen.night_air(has_airglow=has_airglow, has_city=True)
+        return own.seen_by(self._response, city)
+
+    @cached_property
+    def moonlit(self) -> Moonlit | None:
+        """The Moon that an eye sees."""
+        seen = self._seen.moonlit
+        if seen is None:
+            return None
+        from skybake.image.moonlit import Moonlit
+
+        return Moonlit(self, seen.moon, self.stages, seen, self._shared.moon_sky(self, seen.moon))
 
     @property
     def luminance(self) -> Array:
@@ -116,12 +148,12 @@ def camera_scene(scene: Scene, response: CameraResponse) -> BandScene:
     Raises
     ------
     InputError
-        If the camera sees other wavelengths than the scene has, or there are lights of the night.
+        If the camera sees other wavelengths than the scene has.
     """
-    _check_night("camera", scene)
     weights = response.weights(scene.sky.wavelengths, *star_spectrum(scene.sky.star))
-    weights = weights / scene.settings.encoding.white_luminance
-    return BandScene(scene, scene.sky, weights, _SharedTables(scene.stages))
+    white = scene.settings.encoding.white_luminance
+    channels = CameraChannels(response, white)
+    return BandScene(scene, scene.sky, channels, weights / white, SharedStages(scene.stages))
 
 
 def spectral_scenes(scene: Scene) -> list[tuple[BandScene, tuple[float, ...]]]:
@@ -132,14 +164,8 @@ def spectral_scenes(scene: Scene) -> list[tuple[BandScene, tuple[float, ...]]]:
     list of (BandScene, tuple of float)
         Scenes in spectral radiance [W m⁻² sr⁻¹ nm⁻¹], and the wavelengths of their first
         channels, one to three, ascending. [nm]
-
-    Raises
-    ------
-    InputError
-        If there are lights of the night.
     """
-    _check_night("spectral", scene)
-    stages = _SharedTables(scene.stages)
+    stages = SpectralStages(scene.stages)
     found = []
     wavelengths = np.concatenate(scene.settings.sensor.groups())
     irradiance = dict(
@@ -154,9 +180,13 @@ def spectral_scenes(scene: Scene) -> list[tuple[BandScene, tuple[float, ...]]]:
         for first in range(0, group.size, CHANNELS):
             some = group[first : first + CHANNELS].tolist()
             weights = np.zeros((group.size, CHANNELS))
-            for channel, wavelength in enumerate(some):
-                weights[first + channel, channel] = irradiance[wavelength]
-            found.append((BandScene(scene, sky, weights, stages), tuple(some)))
+            for channel in range(CHANNELS):
+                # Channels that are left over repeat the last one: clouds need light in all.
+                at = min(channel, len(some) - 1)
+                weights[first + at, channel] = irradiance[some[at]]
+            shown = np.array([*some, *[some[-1]] * (CHANNELS - len(some))])
+            response = Wavelengths(wavelengths, shown)
+            found.append((BandScene(scene, sky, response, weights, stages), tuple(some)))
     return found
 
 
@@ -177,44 +207,6 @@ def _sky_at(scene: Scene, wavelengths: Array) -> Sky:
     )
 
 
-def _check_night(what: str, scene: Scene) -> None:
-    """Refuse lights that are known to an eye alone."""
-    lights = {
-        "stars": scene.stars is not None,
-        "a glow of the night": scene.night_glow is not None,
-        "the Moon": "moon" in scene.layer_names or moon_lights_air(scene),
-    }
-    for name, is_there in lights.items():
-        if is_there:
-            raise InputError(
-                f"{what}: needs a map without lights of the night, which are known to an eye "
-                f"alone, got {name}; night off and moon exclude leave them out"
-            )
-
-
 def moon_lights_air(scene: Scene) -> bool:
     """Whether moonlight that the air scatters is in a map."""
     return scene.moonlit is not None and scene.moonlit.lights_air
-
-
-class _SharedTables(Stages):
-    """Stages that trace the rays of a sky once for all of its channels."""
-
-    def __init__(self, stages: Stages) -> None:
-        super().__init__(keeps_light_of_clouds=stages.keeps_light_of_clouds)
-        self._stages = stages
-        self._tables: dict[tuple[int, bool], SpectralTable] = {}
-        self._stokes: dict[int, StokesTable] = {}
-
-    def spectral_table(self, sky: Sky, *, finely: bool = False) -> SpectralTable:
-        """Light around the observer in all wavelengths."""
-        key = id(sky), finely
-        if key not in self._tables:
-            self._tables[key] = self._stages.spectral_table(sky, finely=finely)
-        return self._tables[key]
-
-    def stokes_table(self, sky: Sky) -> StokesTable:
-        """Linear polarisation around the observer in all wavelengths."""
-        if id(sky) not in self._stokes:
-            self._stokes[id(sky)] = super().stokes_table(sky)
-        return self._stokes[id(sky)]

@@ -90,7 +90,7 @@ class CloudsOver:
         """Pixels that hold sky and ground: each part has its own clouds."""
         low, high = zenith - 0.5 * footprint, zenith + 0.5 * footprint
         horizon = self._cloudscape.horizon
-        total = np.zeros((zenith.size, 3), np.float32)
+        total: np.ndarray | float = 0.0
         hidden = np.zeros(zenith.size, np.float32)
         for begin, end in ((low, np.full_like(low, horizon)), (np.full_like(low, horizon), high)):
             middle, extent = 0.5 * (begin + end), end - begin
@@ -98,31 +98,44 @@ class CloudsOver:
             share = (extent / footprint).astype(np.float32)
             alone = (each[:, None] for each in (middle, azimuth, footprint))
             light, opacity = self._put(clear[:, None], *alone)
-            total += share[:, None] * light
+            total = total + share[:, None] * light
             hidden += share * opacity
-        return total, hidden
+        return np.asarray(total), hidden
 
     def _put(
         self, pixels: np.ndarray, zenith: Array, azimuth: Array, footprint: Array | float
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return pixels (pixel, 3) of rows (row, column, 3) with clouds, and what these hide."""
-        clouds, shape = self._cloudscape, pixels.shape[:2]
         xyz = pixels @ self._to_xyz
+        looks = self._look(xyz, zenith, azimuth, footprint)
+        light, opacity = self._cloudscape.put_into(xyz.reshape(-1, 3), *looks)
+        return light @ self._to_rgb, opacity
+
+    def _look(
+        self, xyz: np.ndarray, zenith: Array, azimuth: Array, footprint: Array | float
+    ) -> tuple[Array, Array, np.ndarray, np.ndarray]:
+        """Return directions of pixels and what is seen of clouds there, for `put_into`."""
+        clouds, shape = self._cloudscape, xyz.shape[:2]
         # Each pixel by its own size: which others are in its band must not matter.
         sizes = np.rint(np.log(footprint) / math.log(ALIKE)).astype(int)
-        classes, extent = (np.broadcast_to(each, shape) for each in (sizes, footprint))
-        angle, bearing = (
-            np.broadcast_to(each, shape).ravel() for each in (zenith, azimuth + self._sun_azimuth)
+        bearing = azimuth + self._sun_azimuth
+        # Of maps whose rows have one zenith angle these are few.
+        directions = np.broadcast_to(unit_vectors(zenith, bearing), (*shape, 3))
+        flat = directions.reshape(-1, 3)
+        angle, bearing, extent, classes = (
+            np.ascontiguousarray(np.broadcast_to(each, shape)).ravel()
+            for each in (zenith, bearing, np.asarray(footprint, float), sizes)
         )
-        directions, classes = unit_vectors(angle, bearing), classes.ravel()
+        apart = np.unique(sizes).tolist()
 
         def see(pixels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            return _see(clouds, directions[pixels], classes[pixels])
+            if len(apart) == 1:
+                return clouds.see(flat[pixels], RESOLVED * ALIKE ** apart[0])
+            return _see(clouds, flat[pixels], classes[pixels])
 
-        given = directions.reshape(*shape, 3), np.ascontiguousarray(extent, float), xyz
+        given = directions, extent.reshape(shape), xyz
         seen, passing = see_rows(see, *given, clouds.alike, clouds.workers)
-        light, opacity = clouds.put_into(xyz.reshape(-1, 3), angle, bearing, seen, passing)
-        return light @ self._to_rgb, opacity
+        return angle, bearing, seen, passing
 
 
 def _see(

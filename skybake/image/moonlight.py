@@ -39,17 +39,6 @@ class Moonlight:
         """Whether the map holds no other light."""
         return self.shown == "only" and self.moon is not None
 
-    def check_clouds(self, *, has_clouds: bool) -> None:
-        """Refuse to leave out the sun in a world whose clouds it lights.
-
-        Raises
-        ------
-        InputError
-            That names the Moon.
-        """
-        if has_clouds and self.is_alone:
-            raise InputError("moon: only must be in a world without clouds")
-
     def recipe(self) -> dict[str, Any]:
         """All that decides the pixels, in human-readable units, fit for JSON."""
         if self.moon is None or self.shown == "exclude":

@@ -51,6 +51,10 @@ class Moonlit:
         The Moon.
     stages : Stages
         What makes tables.
+    eye : Moonlit, optional
+        The same for an eye, of a scene in other channels; that judges what is seen.
+    sky : Sky, optional
+        With the Moon in the place of the sun, if it is known.
 
     Attributes
     ----------
@@ -64,21 +68,20 @@ class Moonlit:
         Whether Earth's shadow is on it.
     """
 
-    def __init__(self, scene: Scene, moon: LitMoon, stages: Stages) -> None:
-        self._scene, self.moon, self._stages = scene, moon, stages
+    def __init__(
+        self,
+        scene: Scene,
+        moon: LitMoon,
+        stages: Stages,
+        eye: Moonlit | None = None,
+        sky: Sky | None = None,
+    ) -> None:
+        self._scene, self.moon, self._stages, self._eye = scene, moon, stages, eye
         settings = scene.settings
         self.bearing = moon.azimuth - settings.view.rotation
         self.zenith = math.pi / 2.0 - moon.elevation
         self.angular_radius = moon.angular_radius
-        self.sky = Sky(
-            scene.planet,
-            moon.elevation,
-            settings.view.altitude,
-            sun_azimuth=moon.azimuth,
-            sun_distance=moon.sun_distance or settings.lighting.sun_distance,
-            method=settings.lighting.method,
-            workers=scene.workers,
-        )
+        self.sky = sky or moon_sky(scene, moon)
         self.is_eclipsed = is_reached(moon, self.sky.star.angular_radius)
         self._disc = MoonDisc(moon, EarthShadow(self.sky, moon) if self.is_eclipsed else None)
 
@@ -121,7 +124,7 @@ class Moonlit:
         nodes, sunlight = star_spectrum(star_at(sky.planet.star, sky.sun_distance))
         lit = share(nodes) * sunlight
         if sky.planet.rendering == "spectral":
-            return xyz_weights(sky.wavelengths, nodes, lit)
+            return self._scene.response.weights(sky.wavelengths, nodes, lit)
         # Three wavelengths stand for R, G and B of the sun: as much of it as is left in sum.
         whole = np.sort(np.array(sky.planet.wavelengths, dtype=float))
         left = xyz_weights(whole, nodes, lit)[:, 1].sum()
@@ -160,12 +163,20 @@ class Moonlit:
     @cached_property
     def lights_air(self) -> bool:
         """Whether its scattered light can be seen beside that of sun and night."""
+        if self._eye is not None:
+            return self._eye.lights_air
         if self._scene.settings.moonlight.is_alone:
             return True
         if self.moon.elevation < LOWEST and self._scene.sky.skylight.radius < self._top:
             return False
         least = float((self._scene.clear_survey @ self._scene.luminance).min())
         return ZENITH_SHARE * self.illuminance_above > SEEN_SHARE * least
+
+    @cached_property
+    def rgb_weights(self) -> Array:
+        """As `Scene.rgb_weights`, of what scatters the light of the Moon."""
+        weights: Array = self.air_weights @ self._to_rgb
+        return weights
 
     @property
     def _top(self) -> float:
@@ -180,7 +191,7 @@ class Moonlit:
 
     @cached_property
     def _table(self) -> FoldedTable:
-        return self._stages.folded_table(self.sky, self.air_weights @ self._to_rgb)
+        return self._stages.folded_table(self.sky, self.rgb_weights)
 
     def add(self, zenith: Array, azimuth: Array, footprint: Array | float, out: Pixels) -> None:
         """Add its scattered light to pixels, whose azimuths are counted from the sun."""
@@ -245,3 +256,18 @@ class Moonlit:
         weight = np.where(total > 0.0, weight / np.where(total > 0.0, total, 1.0), 1.0 / size.size)
         light = weight * Disc(self.sky.skylight, self.sky.source).transmittance(zenith)
         return light.sum(axis=0), (light * np.maximum(cosine, 0.0)[:, None]).sum(axis=0)
+
+
+def moon_sky(scene: Scene, moon: LitMoon) -> Sky:
+    """Return the sky of a scene with the Moon in the place of the sun."""
+    lighting = scene.settings.lighting
+    return Sky(
+        scene.planet,
+        moon.elevation,
+        scene.settings.view.altitude,
+        sun_azimuth=moon.azimuth,
+        sun_distance=moon.sun_distance or lighting.sun_distance,
+        wavelengths=scene.sky.wavelengths,
+        method=lighting.method,
+        workers=scene.workers,
+    )

@@ -110,6 +110,20 @@ class Night:
         """Whether there can be any."""
         return self.is_lit and self.stars != "exclude"
 
+    def check_altitude(self, altitude: float, top: float) -> None:
+        """Refuse cities whose glow has no zenith, seen from above the atmosphere's top. [km]
+
+        Raises
+        ------
+        InputError
+            That names the altitude.
+        """
+        if self.city > 0.0 and altitude >= top:
+            raise InputError(
+                f"light pollution: must be seen from below the top of the air at {top:g} km, "
+                f"got an altitude of {altitude:g} km"
+            )
+
     def recipe(self) -> dict[str, Any]:
         """All that decides the pixels, in human-readable units, fit for JSON."""
         if self.frame is None or not self.is_shown:

@@ -8,7 +8,6 @@ from skybake.colour.space import rgb_from_xyz
 from skybake.ephemeris.celestial import CelestialFrame
 from skybake.image.layers import Pixels
 from skybake.image.scene import Scene
-from skybake.image.stages import Stages
 from skybake.jit.arguments import flatten
 from skybake.night.air import ABOVE, BEARINGS
 from skybake.night.dome import NightDome
@@ -18,11 +17,11 @@ from skybake.optics.medium import Array
 ROWS_AT_ONCE = 16
 
 
-def glow_over(scene: Scene, frame: CelestialFrame, stages: Stages) -> NightGlow:
+def glow_over(scene: Scene, frame: CelestialFrame) -> NightGlow:
     """Return the glow of a scene's night, whose stars stand in a frame."""
     night = scene.settings.night
     airglow = night.airglow if frame.planet == "earth" else 0.0
-    air = stages.night_air(scene.sky, has_airglow=airglow > 0.0, has_city=night.city > 0.0)
+    air = scene.night_air(has_airglow=airglow > 0.0, has_city=night.city > 0.0)
     dome = NightDome(
         scene.sky,
         frame,
@@ -49,6 +48,8 @@ class NightGlow:
 
     Attributes
     ----------
+    dome : NightDome
+        As given.
     airglow : float
         As given.
     illuminance : float
@@ -64,6 +65,7 @@ class NightGlow:
         to_rgb = rgb_from_xyz(encoding.space).T / encoding.white_luminance
         self._table = (dome.xyz @ to_rgb).astype(np.float32)
         self._horizon, self._workers = dome.zenith_horizon, scene.workers
+        self.dome = dome
         self._sun_azimuth = scene.settings.lighting.sun_azimuth
 
     def add(self, zenith: Array, azimuth: Array, footprint: Array | float, out: Pixels) -> None:

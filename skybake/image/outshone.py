@@ -19,6 +19,9 @@ STAR_SHARE = 0.02
 GLOW_SHARE = 1e-3
 """Share of the darkest light of the sky that the glow of the night must be to be seen."""
 
+LEFT_BY_CLOUDS = 0.1
+"""Share of the light of the sky that comes through thick clouds."""
+
 BRIGHTEST_GLOW = 1.5e-3
 """Of the sky between stars, away from the sun. [cd m⁻²]"""
 
@@ -65,7 +68,9 @@ def glow_is_outshone(scene: Scene) -> bool:
     night = scene.settings.night
     brightest = BRIGHTEST_GLOW * max(night.airglow, night.zodiacal, 1.0)
     brightest += CITY_AT_HORIZON * night.city
-    return brightest < GLOW_SHARE * _darkest(scene)
+    # Clouds dim the sky more than what lamps send up to them.
+    share = GLOW_SHARE * (LEFT_BY_CLOUDS if scene.planet.clouds else 1.0)
+    return brightest < share * _darkest(scene)
 
 
 def sun_is_outshone(scene: Scene) -> bool:
@@ -79,7 +84,7 @@ def sun_is_outshone(scene: Scene) -> bool:
     least = DARKEST_GLOW if night.frame is not None and night.shows_glow else 0.0
     if scene.moonlit is not None:
         least += scene.moonlit.least_luminance
-    if least == 0.0 or scene.planet.clouds or sky.skylight.radius >= sky.medium.r_top:
+    if least == 0.0 or sky.skylight.radius >= sky.medium.r_top:
         return False
     zenith = np.radians(SUNWARD)
     mu, sine = np.cos(zenith), np.sin(zenith)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 
@@ -17,12 +18,12 @@ REFERENCE = "toward the zenith; S2 counter-clockwise, seen along the view"
 """What S1 and S2 are relative to, as files state it."""
 
 
-def check_polarisation(planet: Planet, settings: MapSettings, what: str) -> None:
+def check_polarisation(settings: MapSettings, what: str) -> None:
     """Refuse maps whose polarisation is not known.
 
     Parameters
     ----------
-    planet, settings : Planet, MapSettings
+    settings : MapSettings
         What is baked.
     what : str
         What asks for polarisation, for messages.
@@ -30,13 +31,8 @@ def check_polarisation(planet: Planet, settings: MapSettings, what: str) -> None
     Raises
     ------
     InputError
-        With clouds, in an eclipse, by another method than full, or with an extended horizon.
+        In an eclipse, by another method than full, or with an extended horizon.
     """
-    if not all(layer.is_empty for layer in planet.clouds):
-        raise InputError(
-            f"{what}: needs a world without clouds, whose light has no polarisation here, "
-            f"got {len(planet.clouds)} layers"
-        )
     if settings.lighting.moon is not None:
         raise InputError(f"{what}: needs a sun without a moon in front, got one")
     if settings.lighting.method != "full":
@@ -50,13 +46,15 @@ def check_polarisation(planet: Planet, settings: MapSettings, what: str) -> None
 
 def polarisation_warnings(planet: Planet) -> list[str]:
     """Return what is to know of a world's polarisation, a line each."""
-    names = unpolarised_constituents(planet)
-    if not names:
-        return []
-    return [
-        f"what {', '.join(names)} scatter{'s' if len(names) == 1 else ''} counts as unpolarised, "
-        "since no scattering matrix is known"
-    ]
+    names, warnings = unpolarised_constituents(planet), []
+    if names:
+        warnings.append(
+            f"what {', '.join(names)} scatter{'s' if len(names) == 1 else ''} counts as "
+            "unpolarised, since no scattering matrix is known"
+        )
+    if not all(layer.is_empty for layer in planet.clouds):
+        warnings.append("what clouds scatter counts as unpolarised")
+    return warnings
 
 
 def evaluate_stokes(
@@ -76,6 +74,19 @@ def evaluate_stokes(
     ndarray of float32, shape (row, column, 6)
         S1 of three channels, and S2.
     """
+    if scene.cloudscape is not None:
+        # Clear skies do not wait for kernels of clouds.
+        from skybake.image.polarised_clouds import stokes_behind_clouds
+
+        clear = partial(_clear_stokes, scene)
+        return stokes_behind_clouds(scene, clear, zenith, azimuth, footprint)
+    return _clear_stokes(scene, zenith, azimuth, footprint)
+
+
+def _clear_stokes(
+    scene: Scene, zenith: Array, azimuth: Array, footprint: Array | float
+) -> np.ndarray:
+    """As `evaluate_stokes`, without clouds."""
     even, odd = (scene.evaluate_table(each, zenith, azimuth, footprint) for each in scene.stokes)
     odd *= np.sin(azimuth)[..., None].astype(np.float32)
     return np.concatenate([even, odd], axis=2)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from skybake.colour.response import EyeResponse, Response
 from skybake.colour.space import luminance_weights, rgb_from_xyz
 from skybake.image.discs import drawn_sun
 from skybake.image.horizontal import horizontal_irradiance
@@ -28,10 +29,11 @@ from skybake.sky.table import FoldedTable
 
 if TYPE_CHECKING:
     from skybake.clouds.cloudscape import Cloudscape
-    from skybake.image.cloudy import CloudsOver
+    from skybake.image.clouded import LitClouds
     from skybake.image.eclipsed import LeftShare
     from skybake.image.moonlit import Moonlit
     from skybake.image.night_glow import NightGlow
+    from skybake.night.air import NightAir
     from skybake.night.stars import Stars
     from skybake.sky.stokes_table import FoldedStokes
 
@@ -77,7 +79,8 @@ class Scene:
             workers=workers,
         )
         self.sky.check_clouds()
-        settings.moonlight.check_clouds(has_clouds=bool(planet.clouds))
+        medium = self.sky.medium
+        settings.night.check_altitude(settings.view.altitude, medium.r_top - medium.r_bottom)
         if settings.view.below_horizon == "extend":
             from skybake.image.below_horizon import check_horizon
 
@@ -96,6 +99,11 @@ class Scene:
             If it is to be soft and no such disc fits half floats.
         """
         return drawn_sun(self)
+
+    @property
+    def response(self) -> Response:
+        """How its three channels respond to light."""
+        return EyeResponse()
 
     @cached_property
     def xyz_weights(self) -> Array:
@@ -116,25 +124,18 @@ class Scene:
         return self._surveyed.table
 
     @cached_property
-    def cloudscape(self) -> Cloudscape | None:
-        """The world's clouds over the observer, or None where there are none."""
+    def lit_clouds(self) -> tuple[LitClouds, ...]:
+        """The world's clouds over the observer in each of the lights that they have."""
         if not self.planet.clouds:
-            return None
-        from skybake.clouds.build import build_cloudscape
+            return ()
+        from skybake.image.clouded import lit_clouds
 
-        # Of no exposure, so that all share the light.
-        weights = self.xyz_weights
-        if self.sky.eclipse is not None:
-            weights = weights * self.sky.eclipse.share_for_clouds[:, None]
-        return build_cloudscape(
-            self.planet.clouds,
-            self.sky,
-            weights,
-            time=self.settings.clouds.time,
-            quality=self.settings.clouds.quality,
-            workers=self.workers,
-            keeps_light=self.stages.keeps_light_of_clouds,
-        )
+        return lit_clouds(self)
+
+    @property
+    def cloudscape(self) -> Cloudscape | None:
+        """The clouds in the first of their lights, the sun's unless it is outshone, or None."""
+        return self.lit_clouds[0].cloudscape if self.lit_clouds else None
 
     @cached_property
     def stars(self) -> Stars | None:
@@ -158,7 +159,11 @@ class Scene:
             return None
         from skybake.image.night_glow import glow_over
 
-        return glow_over(self, night.frame, self.stages)
+        return glow_over(self, night.frame)
+
+    def night_air(self, *, has_airglow: bool, has_city: bool) -> NightAir:
+        """Return what of the night over the observer no hour changes."""
+        return self.stages.night_air(self.sky, has_airglow=has_airglow, has_city=has_city)
 
     @cached_property
     def stokes(self) -> FoldedStokes:
@@ -179,8 +184,8 @@ class Scene:
 
     def light_clouds(self) -> None:
         """Solve for the light of clouds, which takes longest, before pixels show them."""
-        if self.cloudscape is not None:
-            _ = self.cloudscape.nodes
+        for lit in self.lit_clouds:
+            _ = lit.cloudscape.nodes
 
     @property
     def clear_survey(self) -> np.ndarray:
@@ -275,10 +280,17 @@ class Scene:
         UnsolvableError
             As of `survey`.
         """
-        pixels = self.evaluate_clear(zenith, azimuth, footprint)
-        if self.cloudscape is not None:
-            return self.clouds_over(self.cloudscape)(pixels, zenith, azimuth, footprint)
-        return pixels
+        if self.cloudscape is None:
+            return self.evaluate_clear(zenith, azimuth, footprint)
+        return self.evaluate_clouded(zenith, azimuth, footprint)[0]
+
+    def evaluate_clouded(
+        self, zenith: Array, azimuth: Array, footprint: Array | float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Pixel values with clouds, and the share of what is behind them that these hide."""
+        from skybake.image.clouded import evaluate_clouded
+
+        return evaluate_clouded(self, zenith, azimuth, footprint)
 
     def evaluate_clear(self, zenith: Array, azimuth: Array, footprint: Array | float) -> np.ndarray:
         """Pixel values of the sky without clouds, see `evaluate`."""
@@ -286,11 +298,17 @@ class Scene:
             shape = np.broadcast_shapes(zenith.shape, azimuth.shape)
             pixels = np.zeros((*shape, 3), np.float32)
         else:
-            pixels = self.without_negative(self._evaluate(self.table, zenith, azimuth, footprint))
+            pixels = self.evaluate_sunlight(zenith, azimuth, footprint)
         for light in (self.night_glow, self.moonlit):
             if light is not None:
                 light.add(zenith, azimuth, footprint, pixels)
         return pixels
+
+    def evaluate_sunlight(
+        self, zenith: Array, azimuth: Array, footprint: Array | float
+    ) -> np.ndarray:
+        """Pixel values of the light of the sun alone without clouds, see `evaluate`."""
+        return self.without_negative(self._evaluate(self.table, zenith, azimuth, footprint))
 
     def without_negative(self, pixels: np.ndarray) -> np.ndarray:
         """Set pixels of negative luminance, which are rounding, to 0, and return them."""
@@ -299,17 +317,6 @@ class Scene:
         if pixels.min(initial=0.0) < 0.0 or weights.min() < 0.0:
             blacken_negative(weights, pixels)
         return pixels
-
-    def clouds_over(self, cloudscape: Cloudscape) -> CloudsOver:
-        """Return what puts clouds into pixels of the sky without them."""
-        from skybake.image.cloudy import CloudsOver
-
-        def clear(zenith: Array, azimuth: Array, footprint: Array) -> np.ndarray:
-            return self._evaluate(self.table, zenith, azimuth, footprint)
-
-        encoding = self.settings.encoding
-        azimuth = self.settings.lighting.sun_azimuth
-        return CloudsOver(cloudscape, clear, azimuth, encoding.space, encoding.white_luminance)
 
     def _evaluate(
         self, table: FoldedTable, zenith: Array, azimuth: Array, footprint: Array | float

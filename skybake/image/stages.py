@@ -10,6 +10,8 @@ from skybake.sky.spectral_table import SpectralTable, fold_table
 from skybake.sky.table import FoldedTable
 
 if TYPE_CHECKING:
+    from skybake.clouds.cloudscape import Cloudscape
+    from skybake.image.settings import Clouds
     from skybake.night.air import NightAir
     from skybake.sky.stokes_table import StokesTable
 
@@ -54,6 +56,31 @@ class Stages:
             As of `skybake.sky.spectral_table.table_geometry`.
         """
         return fold_table(self.spectral_table(sky, finely=finely), sky.skylight.basis, rgb_weights)
+
+    def cloudscape(self, sky: Sky, weights: Array, clouds: Clouds) -> Cloudscape | None:
+        """Return a world's clouds over the observer, or None where there is none.
+
+        Parameters
+        ----------
+        sky : Sky
+            The observer, the air and what lights it.
+        weights : ndarray of float64, shape (wavelength, channel)
+            As of `skybake.clouds.build.build_cloudscape`.
+        clouds : Clouds
+            When they are seen, and how finely.
+        """
+        # Clear skies do not wait for kernels of clouds.
+        from skybake.clouds.build import build_cloudscape
+
+        return build_cloudscape(
+            sky.planet.clouds,
+            sky,
+            weights,
+            time=clouds.time,
+            quality=clouds.quality,
+            workers=sky.workers,
+            keeps_light=self.keeps_light_of_clouds,
+        )
 
     def night_air(self, sky: Sky, *, has_airglow: bool, has_city: bool) -> NightAir:
         """Return what of the night over the observer no hour changes."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from skybake.angles import zenith_azimuth
 from skybake.colour.observer import load_observer, xyz_weights
+from skybake.colour.response import weights_of_radiance
 from skybake.colour.space import find_colour_space, rgb_from_xyz
 from skybake.ephemeris.celestial import CelestialFrame
 from skybake.image.layers import Pixels
@@ -16,8 +17,6 @@ from skybake.night.stars import Stars
 from skybake.optics.medium import Array
 from skybake.projection.chart import Chart
 from skybake.projection.points import spread_points
-
-_EVERYWHERE = np.array([300.0, 900.0])
 
 
 def stars_over(scene: Scene, frame: CelestialFrame) -> Stars:
@@ -30,8 +29,7 @@ def star_xyz(scene: Scene, stars: Stars) -> Array:
     """XYZ by each star on a plane that faces it, shape (n, 3). [lx]"""
     sky = scene.sky
     if sky.planet.rendering == "spectral":
-        flat = np.ones_like(_EVERYWHERE)
-        light: Array = stars.irradiance @ xyz_weights(sky.wavelengths, _EVERYWHERE, flat)
+        light: Array = stars.irradiance @ weights_of_radiance(scene.response, sky.wavelengths)
     else:
         # Three wavelengths stand for R, G and B, and dim these.
         nodes, _ = load_observer()

@@ -30,13 +30,14 @@ _STATUS = ir.IntType(32)
 _RESULTS = {types.none: "none", types.boolean: "bool", types.int64: "int", types.float64: "float"}
 
 
-def linkable(function: Callable[..., Any]) -> Any:
-    """Return what numba links into a kernel that calls `function`.
+def linkable(function: Callable[..., Any], *, is_inlined: bool = False) -> Any:
+    """Return what numba links into a kernel that calls `function`, or that contains it.
 
     Neither can Python call it nor is memory counted in it: kernels make no arrays.
     """
     options: dict[str, Any] = {"nogil": True, "fastmath": FAST_MATH, "error_model": "numpy"}
     options |= {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "_nrt": False}
+    options |= {"forceinline": True} if is_inlined else {}
     return numba.njit(**options)(function)
 
 

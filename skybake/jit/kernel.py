@@ -32,6 +32,8 @@ class Kernel:
     ----------
     function : callable
         What numba compiles in its nopython mode.
+    is_inlined : bool, optional
+        Whether kernels that call it contain it.
 
     Attributes
     ----------
@@ -39,9 +41,10 @@ class Kernel:
         The function itself.
     """
 
-    def __init__(self, function: Callable[..., Any]) -> None:
+    def __init__(self, function: Callable[..., Any], *, is_inlined: bool = False) -> None:
         functools.update_wrapper(self, function)
         self.py_func = function
+        self._is_inlined = is_inlined
         self._entries: dict[tuple[Kind, ...], Entry] = {}
 
     def __call__(self, *arguments: Any) -> Any:
@@ -57,7 +60,7 @@ class Kernel:
     def _dispatcher(self) -> Any:
         from skybake.jit.compile import linkable
 
-        return linkable(self.py_func)
+        return linkable(self.py_func, is_inlined=self._is_inlined)
 
     @property
     def _numba_type_(self) -> Any:
@@ -98,6 +101,15 @@ class Kernel:
 def kernel(function: Callable[..., Any]) -> Kernel:
     """Make a kernel of `function`; see `Kernel`."""
     return Kernel(function)
+
+
+def inlined_kernel(function: Callable[..., Any]) -> Kernel:
+    """Make a kernel that those which call it contain.
+
+    Tuples are passed by value: where one of many arrays goes through several calls for each
+    sample, copies of it take as long as the work itself.
+    """
+    return Kernel(function, is_inlined=True)
 
 
 _one_at_a_time = threading.RLock()

@@ -39,15 +39,23 @@ class Workers:
         which suits callers that are themselves several threads.
     cancel : threading.Event, optional
         When it is set, work that has not begun is cancelled.
+    listener : callable, optional
+        Called with the share of a long work that is done.
 
     Notes
     -----
     Work must not give more work to the same workers: all of them could wait for each other.
     """
 
-    def __init__(self, count: int | None = None, cancel: Event | None = None) -> None:
+    def __init__(
+        self,
+        count: int | None = None,
+        cancel: Event | None = None,
+        listener: Callable[[float], None] | None = None,
+    ) -> None:
         self._count = count
         self._cancel = cancel
+        self._listener = listener
         self._pool: ThreadPoolExecutor | None = None
         _all_workers.add(self)
 
@@ -56,9 +64,16 @@ class Workers:
         """How many there are."""
         return self._count or cpu_count()
 
-    def with_cancel(self, cancel: Event) -> Workers:
+    def with_cancel(
+        self, cancel: Event, listener: Callable[[float], None] | None = None
+    ) -> Workers:
         """Return the same number of workers, which stop when the event is set."""
-        return Workers(self._count, cancel)
+        return Workers(self._count, cancel, listener)
+
+    def tell(self, share: float) -> None:
+        """Tell the listener, if there is one, which share of a long work is done."""
+        if self._listener is not None:
+            self._listener(share)
 
     def check(self) -> None:
         """Raise a `CancelledError` if the work is to stop."""

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from copy import copy
 
 import numpy as np
 
 from skybake.angles import direction_from_angles
-from skybake.colour.observer import LUMINOUS_EFFICACY, load_observer
+from skybake.colour.response import Response
 from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.night.airglow import Layer, airglow_layers, path_through
 from skybake.night.channels import Channels
@@ -56,11 +57,16 @@ class NightAir:
         XYZ of airglow at the level of its table. [cd m⁻²]
     city : ndarray of float64, shape (row, 3)
         XYZ of the glow of a city all around, whose luminance in the zenith is 1.
+    city_spectra : ndarray of float64, shape (row, channel)
+        Of the same glow.
+    lamps : ndarray of float64, shape (channel,)
+        Radiance of the ground of that city.
     """
 
     def __init__(self, sky: Sky, *, has_airglow: bool, has_city: bool = False) -> None:
         skylight, medium = sky.skylight, sky.skylight.atmosphere.medium
         self._radius, self._bottom = skylight.radius, medium.r_bottom
+        self._sky = sky
         self.sources = ExtendedSky(skylight.atmosphere, self._radius)
         self.channels = Channels(sky)
         self.zenith_horizon = math.pi - math.asin(min(self._bottom / self._radius, 1.0))
@@ -70,16 +76,19 @@ class NightAir:
         self.vectors = direction_from_angles(bearing, 0.5 * math.pi - self.zenith[:, None])
         self.passing = self.sources.passing(np.cos(self.zenith))
         self.weights = self.channels.weights
-        self.airglow = np.zeros((ABOVE + BELOW, 3))
+        self._layers: list[tuple[Layer, Array]] = []
         if has_airglow:
             theta = np.linspace(0.0, 0.5 * math.pi, STEPS)
             for layer in airglow_layers():
                 seen = self.scattered(self.layer_from_ground(layer, theta), sky.workers)
                 seen += self.layer_directly(layer, self.zenith, self.passing)
-                self.airglow += lines_xyz(layer, self.channels, seen)
+                self._layers.append((layer, seen))
+        self.airglow = self._airglow()
+        self.city_spectra = np.zeros((ABOVE + BELOW, self.weights.shape[0]))
+        self.lamps = np.zeros(self.weights.shape[0])
         self.city = np.zeros((ABOVE + BELOW, 3))
         if has_city:
-            self.city = self._city(sky)
+            self._add_city(sky)
 
     def scattered(self, rings: Array, workers: Workers = ALL_CPUS) -> Array:
         """Radiance that is scattered toward the observer, shape (row, wavelength).
@@ -106,18 +115,48 @@ class NightAir:
         weights[ABOVE:, NODES_ABOVE:] = _cubic_weights(BELOW, NODES_BELOW)
         return nodes, weights
 
-    def _city(self, sky: Sky) -> Array:
-        """XYZ of the glow of a city, and of the ground that it lights, shape (row, 3)."""
+    def _add_city(self, sky: Sky) -> None:
+        """Find the glow of a city, and that of the ground that it lights."""
         zenith = self.zenith[:ABOVE]
-        glow = ground_response(sky, zenith, sky.workers)
-        glow = glow * lamp_channels(self.channels)
+        lamps = lamp_channels(self.channels)
+        above = self._nodes[self._nodes < self.zenith_horizon]
+        response = ground_response(sky, above, sky.workers)
+        glow = self._between[:ABOVE, : above.size] @ response * lamps
         on_plane = np.sin(zenith) * np.maximum(np.cos(zenith), 0.0)
         irradiance = 2.0 * math.pi * np.trapezoid(glow * on_plane[:, None], zenith, axis=0)
         albedo = sky.skylight.atmosphere.medium.ground_albedo
         ground = np.broadcast_to(albedo * irradiance / math.pi, (BELOW, albedo.size))
-        xyz = np.concatenate([glow, ground]) @ self.weights
-        in_zenith: Array = xyz / xyz[0, 1]
-        return in_zenith
+        spectra = np.concatenate([glow, ground])
+        xyz = spectra @ self.weights
+        self.city_spectra, self.lamps = spectra / xyz[0, 1], lamps / xyz[0, 1]
+        self.city = xyz / xyz[0, 1]
+
+    def _airglow(self) -> Array:
+        xyz = np.zeros((ABOVE + BELOW, 3))
+        for layer, seen in self._layers:
+            xyz += lines_xyz(layer, self.channels, seen)
+        return xyz
+
+    def seen_by(self, response: Response, city: NightAir | None = None) -> NightAir:
+        """Return the same air, whose XYZ are what a response makes of spectra.
+
+        Parameters
+        ----------
+        response : Response
+            Of three channels.
+        city : NightAir, optional
+            The air at other wavelengths, between which the glow of a city is interpolated.
+        """
+        other = copy(self)
+        other.channels = Channels(self._sky, response)
+        other.weights = other.channels.weights
+        other.airglow = other._airglow()
+        if city is not None:
+            own, known = other.channels.wavelengths, city.channels.wavelengths
+            other.city_spectra = np.stack([np.interp(own, known, row) for row in city.city_spectra])
+            other.lamps = np.interp(own, known, city.lamps)
+        other.city = other.city_spectra @ other.weights
+        return other
 
     def rings(self, parts: Array, spectra: Array) -> Array:
         """Means around the vertical of a light, as `scattered` takes them.
@@ -163,13 +202,8 @@ def lines_xyz(layer: Layer, channels: Channels, seen: Array) -> Array:
         What is seen over the layer's radiance in the zenith from below.
     """
     # Each line has its own colour, and of the air only what it does at its wavelength.
-    nodes, bars = load_observer()
-    colours = np.stack(
-        [np.interp(layer.wavelengths, nodes, bar, left=0.0, right=0.0) for bar in bars.T],
-        axis=1,
-    )
     at_lines = channels.at(layer.wavelengths, seen)
-    xyz: Array = LUMINOUS_EFFICACY * (at_lines * layer.radiance) @ colours
+    xyz: Array = (at_lines * layer.radiance) @ channels.of_lines(layer.wavelengths)
     return xyz
 
 

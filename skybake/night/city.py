@@ -8,7 +8,9 @@ from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.night.channels import Channels
 from skybake.optics.medium import Array
 from skybake.scattering.atmosphere import load_atmosphere
-from skybake.sky.extended import STEPS, ExtendedSky
+from skybake.scattering.segments import trace_segments
+from skybake.scattering.tables import Atmosphere
+from skybake.sky.extended import STEPS, ExtendedSky, overhead
 from skybake.sky.sky import Sky
 
 LEAST_ALBEDO = 0.02
@@ -16,6 +18,12 @@ LEAST_ALBEDO = 0.02
 
 USUAL_ALBEDO = 0.3
 """In place of darker grounds."""
+
+CITY_RADIUS = 15.0
+"""Of the lit ground around the observer, as that of a large city. [km]"""
+
+_ENDS = np.geomspace(0.2, 400.0, 40)
+"""Distances along a ray between which the share of the city in its light is the same. [km]"""
 
 ONE_SIDED = 0.9
 """How much brighter it is at the horizon toward a city than beside it, over the latter."""
@@ -46,37 +54,66 @@ def lamp_channels(channels: Channels) -> Array:
 
 
 def ground_response(sky: Sky, zenith: Array, workers: Workers = ALL_CPUS) -> Array:
-    """Radiance over that of a ground that glows everywhere, shape (direction, wavelength).
+    """Radiance over that of the ground of a city, shape (direction, wavelength).
 
     Parameters
     ----------
     sky : Sky
-        The observer and the air.
+        The observer in the middle of the city, and the air.
     zenith : ndarray of float64, shape (direction,)
-        Zenith angles; below the horizon the ground itself is seen. [rad]
+        Zenith angles above the horizon. [rad]
     workers : Workers, optional
         Threads that do the work.
 
     Notes
     -----
     Under a sky that is alike all around, what a bright ground adds to a black one, over the
-    radiance of that ground. It does not depend on how bright the ground is.
+    radiance of that ground, is the response to one that glows everywhere. It does not depend on how
+    bright the ground is. Of what the air adds along a ray that counts which the city would light,
+    as a disc lights a level plane above it.
     """
+    mu, uniform = np.cos(zenith), np.ones(STEPS)
+    radius, bottom = sky.skylight.radius, sky.skylight.atmosphere.medium.r_bottom
+    ends = np.broadcast_to(np.append(_ENDS, np.inf), (mu.size, _ENDS.size + 1))
+    rays = np.full(mu.shape, radius), mu, *overhead(bottom, radius, mu)
+    lit, black = (ExtendedSky(each, radius) for each in over_two_grounds(sky, workers))
+    ground = lit.ground_radiance(uniform)
+    bright, dark = (
+        trace_segments(each.lit_by(uniform), *rays, ends, workers=workers).diffuse
+        for each in (lit, black)
+    )
+    added = np.diff((bright - dark)[..., : ground.size].astype(float), axis=1, prepend=0.0)
+    middle = np.sqrt(np.append(_ENDS[0], _ENDS) * np.append(_ENDS, _ENDS[-1]))
+    middle = np.broadcast_to(middle, ends.shape)
+    height = np.sqrt(radius**2 + middle**2 + 2.0 * radius * middle * mu[:, None]) - bottom
+    share = lit_by_disc(middle * np.sin(zenith)[:, None], height)
+    response: Array = (added * share[..., None]).sum(axis=1) / ground
+    return response
+
+
+def lit_by_disc(distance: Array, height: Array) -> Array:
+    """Share of the light that a level plane has from a city, of that from an endless one.
+
+    Parameters
+    ----------
+    distance, height : ndarray of float64
+        Of the plane from the city's middle and above it. [km]
+    """
+    square = height**2 + distance**2
+    root = np.sqrt((square + CITY_RADIUS**2) ** 2 - (2.0 * CITY_RADIUS * distance) ** 2)
+    share: Array = 0.5 * (1.0 - (square - CITY_RADIUS**2) / root)
+    return share
+
+
+def over_two_grounds(sky: Sky, workers: Workers = ALL_CPUS) -> tuple[Atmosphere, Atmosphere]:
+    """Return the air of a sky over a ground that reflects, its own if it does, and a black one."""
     own = sky.skylight.atmosphere.medium
-    black = own._replace(ground_albedo=np.zeros_like(own.ground_albedo))
     lit = own
     if own.ground_albedo.min() < LEAST_ALBEDO:
         lit = own._replace(ground_albedo=np.full_like(own.ground_albedo, USUAL_ALBEDO))
-    mu, uniform = np.cos(zenith), np.ones(STEPS)
-    radius = sky.skylight.radius
-    seen = []
-    for medium in (lit, black):
-        extended = ExtendedSky(load_atmosphere(medium, sky.table_method, workers), radius)
-        seen.append(extended.scattered(mu, uniform, workers))
-        if medium is lit:
-            ground = extended.ground_radiance(uniform)
-    response: Array = (seen[0] - seen[1]) / ground
-    return response
+    black = own._replace(ground_albedo=np.zeros_like(own.ground_albedo))
+    method = sky.table_method
+    return load_atmosphere(lit, method, workers), load_atmosphere(black, method, workers)
 
 
 def toward_city(vectors: Array, azimuth: float | None) -> Array:

@@ -42,6 +42,12 @@ class NightDome:
         Zenith angle of the true horizon. [rad]
     xyz : ndarray of float64, shape (row, bearing, 3)
         At `NightAir.vectors`. [cd m⁻²]
+    air : NightAir
+        Through which it is seen.
+    rings : ndarray of float64, shape (STEPS, channel)
+        Means around the vertical of the lights at infinity, above the air.
+    airglow, city : float
+        Of airglow over that of its table, and the luminance by lamps in the zenith. [cd m⁻²]
     """
 
     def __init__(
@@ -56,17 +62,19 @@ class NightDome:
         city_azimuth: float | None = None,
     ) -> None:
         self._sky = sky
-        self._air = air or NightAir(sky, has_airglow=airglow > 0.0, has_city=city > 0.0)
-        self.zenith_horizon = self._air.zenith_horizon
-        glows = [(faint_stars(frame, self._air.channels), 1.0)]
+        self.air = air or NightAir(sky, has_airglow=airglow > 0.0, has_city=city > 0.0)
+        self.zenith_horizon = self.air.zenith_horizon
+        glows = [(faint_stars(frame, self.air.channels), 1.0)]
         if zodiacal > 0.0:
-            glows.append((zodiacal_glow(frame, sky, self._air.channels), zodiacal))
+            glows.append((zodiacal_glow(frame, sky, self.air.channels), zodiacal))
+        self.airglow, self.city = airglow * MEAN_AIRGLOW, city
+        self.rings: Array = np.zeros((STEPS, sky.wavelengths.size))
         self.xyz = self._seen(glows)
-        self.xyz += (airglow * MEAN_AIRGLOW * self._air.airglow)[:, None]
+        self.xyz += (self.airglow * self.air.airglow)[:, None]
         if city > 0.0:
-            around = toward_city(self._air.vectors, city_azimuth)
+            around = toward_city(self.air.vectors, city_azimuth)
             around[ABOVE:] = 1.0
-            self.xyz += city * self._air.city[:, None] * around[..., None]
+            self.xyz += city * self.air.city[:, None] * around[..., None]
 
     @property
     def zenith_luminance(self) -> float:
@@ -76,21 +84,20 @@ class NightDome:
     @property
     def illuminance(self) -> float:
         """Of a horizontal plane. [lx]"""
-        zenith = self._air.zenith[:ABOVE]
+        zenith = self.air.zenith[:ABOVE]
         ring = self.xyz[:ABOVE, :, 1].mean(axis=1) * np.sin(zenith)
         return float(2.0 * math.pi * np.trapezoid(ring * np.maximum(np.cos(zenith), 0.0), zenith))
 
     def _seen(self, glows: list[tuple[Glow, float]]) -> Array:
         """XYZ of lights at infinity, each with its factor."""
-        air = self._air
+        air = self.air
         xyz = np.zeros((*air.vectors.shape[:2], 3))
-        rings = np.zeros((STEPS, self._sky.wavelengths.size))
         for glow, factor in glows:
             parts = factor * glow.brightness(air.vectors)
-            rings += air.rings(parts, glow.spectra)
+            self.rings += air.rings(parts, glow.spectra)
             for light, spectrum in zip(parts, glow.spectra, strict=True):
                 direct = (air.passing * spectrum) @ air.weights
                 for channel in range(3):
                     xyz[..., channel] += light * direct[:, channel, None]
-        around: Array = air.scattered(rings, self._sky.workers) @ air.weights
+        around: Array = air.scattered(self.rings, self._sky.workers) @ air.weights
         return xyz + around[:, None]

@@ -158,7 +158,8 @@ def pad_wavelengths(medium: Medium) -> Medium:
     """Repeat the last wavelength until their number is a multiple of `LANES`."""
     last = medium.ground_albedo.size - 1
     index = np.minimum(np.arange(-(-(last + 1) // LANES) * LANES), last)
-    matrix = medium.matrix[..., index] if len(medium.matrix) else medium.matrix
+    without = np.zeros((*medium.matrix.shape[:-1], index.size))
+    matrix = medium.matrix[..., index] if len(medium.matrix) else without
     return medium._replace(
         scattering=np.ascontiguousarray(medium.scattering[:, index]),
         extinction=np.ascontiguousarray(medium.extinction[:, index]),

@@ -109,19 +109,50 @@ def hat_means(spectrum: Spectrum, wavelengths: Array) -> Array:
     if not spectrum.wavelength:
         return eval_spectrum(spectrum, wavelengths)
     check_range(spectrum.where, spectrum.wavelength, wavelengths)
-    steps = np.minimum(np.diff(wavelengths), WIDEST)
-    if wavelengths.size == 1:
-        below = above = np.array([BANDWIDTH])
-    else:
-        below, above = np.append(steps[0], steps), np.append(steps, steps[-1])
-    side = (np.arange(_HAT_SAMPLES) + 0.5) / _HAT_SAMPLES
     nodes, values = np.array(spectrum.wavelength), np.array(spectrum.values)
+    return hat_means_of(nodes, values, wavelengths)
+
+
+def hat_means_of(nodes: Array, values: Array, wavelengths: Array) -> Array:
+    """Average what is linear between nodes around wavelengths, see `hat_means`."""
+    below, above = _hat_sides(wavelengths)
+    side = (np.arange(_HAT_SAMPLES) + 0.5) / _HAT_SAMPLES
     total = np.zeros(wavelengths.size)
     for sign, width in ((-1.0, below), (1.0, above)):
         around = wavelengths[:, None] + sign * width[:, None] * side
         total += width * (np.interp(around, nodes, values) @ (1.0 - side))
     means: Array = total / (0.5 * _HAT_SAMPLES * (below + above))
     return means
+
+
+def hats_at(lines: Array, wavelengths: Array) -> Array:
+    """Return the weights of `hat_means` for light of single wavelengths.
+
+    Parameters
+    ----------
+    lines : ndarray of float64, shape (line,)
+        Wavelengths of the light. [nm]
+    wavelengths : ndarray of float64, shape (wavelength,)
+        As of `hat_means`.
+
+    Returns
+    -------
+    ndarray of float64, shape (line, wavelength)
+        The mean is the light times these, whose integral over lines is 1. [nm⁻¹]
+    """
+    below, above = _hat_sides(wavelengths)
+    away = lines[:, None] - wavelengths
+    width = np.where(away < 0.0, below, above)
+    hats: Array = np.maximum(1.0 - np.abs(away) / width, 0.0) / (0.5 * (below + above))
+    return hats
+
+
+def _hat_sides(wavelengths: Array) -> tuple[Array, Array]:
+    """How far weights reach below wavelengths and above them. [nm]"""
+    if wavelengths.size == 1:
+        return np.array([BANDWIDTH]), np.array([BANDWIDTH])
+    steps = np.minimum(np.diff(wavelengths), WIDEST)
+    return np.append(steps[0], steps), np.append(steps, steps[-1])
 
 
 def star_at(star: Star, distance: float | None) -> Star:

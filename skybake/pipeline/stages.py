@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 from skybake.image.stages import Stages
 from skybake.jit.kept import Kept
 from skybake.optics.medium import Array
-from skybake.scattering.atmosphere import atmosphere_key
 from skybake.sky.sky import Sky
 from skybake.sky.spectral_table import SpectralTable
 from skybake.sky.table import FoldedTable
@@ -60,7 +59,7 @@ class KeptStages(Stages):
     def night_air(self, sky: Sky, *, has_airglow: bool, has_city: bool) -> NightAir:
         """Return what of the night over the observer no hour changes."""
         make = super().night_air
-        key = atmosphere_key(sky.medium, sky.table_method), sky.altitude, has_airglow, has_city
+        key = sky.atmosphere_key, sky.altitude, has_airglow, has_city
         return self._night_air.get(
             key, lambda: make(sky, has_airglow=has_airglow, has_city=has_city)
         )
@@ -84,5 +83,4 @@ class CoarseStages(KeptStages):
 
 
 def _table_key(sky: Sky, finely: bool) -> TableKey:
-    key = atmosphere_key(sky.medium, sky.table_method)
-    return key, sky.method, sky.altitude, sky.sun_elevation, finely
+    return sky.atmosphere_key, sky.method, sky.altitude, sky.sun_elevation, finely

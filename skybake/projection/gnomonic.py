@@ -78,23 +78,24 @@ class GnomonicChart(Chart):
 
     def footprints(self, first: int, last: int) -> Array:
         """Extents of pixels in zenith angle."""
-        return self._footprints(first, last, *self.angles(first, last))
+        return self.looks(first, last)[2]
 
     def looks(self, first: int, last: int) -> tuple[Array, Array, Array]:
         """Return `angles` and `footprints`."""
-        zenith, bearing = self.angles(first, last)
-        return zenith, bearing, self._footprints(first, last, zenith, bearing)
-
-    def _footprints(self, first: int, last: int, zenith: Array, bearing: Array) -> Array:
-        u, v = self._plane(np.arange(self.width) + 0.5, np.arange(first, last)[:, None] + 0.5)
+        column, row = np.arange(self.width), np.arange(first, last)[:, None]
+        u, v = self._plane(column + 0.5, row + 0.5)
+        x, y, z = self._components(u, v)
+        flat = np.hypot(x, z)
         nearer = 1.0 / np.sqrt(1.0 + u * u + v * v)
         right, up = self.frame.right, self.frame.up
         across = 2.0 * self.half_width / self.width * nearer
         along = 2.0 * self.half_height / self.height * nearer
-        sine, cosine = np.sin(zenith), np.cos(zenith)
-        downward = cosine * np.sin(bearing), -sine, -cosine * np.cos(bearing)
-        extent: Array = np.hypot(_along(downward, across, right), _along(downward, along, up))
-        return extent
+        # In the zenith and the nadir, away from the north, as the bearing has it.
+        is_upright = flat == 0.0
+        steep = y / np.where(is_upright, 1.0, flat)
+        downward = x * steep, -flat, np.where(is_upright, y, z * steep)
+        extent = np.hypot(_along(downward, across, right), _along(downward, along, up))
+        return np.arctan2(flat, y), np.arctan2(x, -z), extent
 
     def solid_angles(self, first: int, last: int) -> Array:
         """Solid angles of pixels, shape (row, column). [sr]"""

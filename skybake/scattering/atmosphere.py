@@ -181,11 +181,12 @@ def _from_arrays(medium: Medium, arrays: dict[str, Any]) -> Atmosphere:
         name: arrays[f"delta_m_{name}"] for name in ScaledMedium._fields if name != "medium"
     }
     constituents = medium.scattering.shape[0]
-    scaled = pad_wavelengths(medium)._replace(
+    padded = pad_wavelengths(medium)
+    scaled = padded._replace(
         scattering=arrays["scaled_scattering"],
         extinction=arrays["scaled_extinction"],
         phase=delta_m_arrays["phase"][:constituents],
-        matrix=np.zeros((0, *medium.matrix.shape[1:])),
+        matrix=padded.matrix[:0],
     )
     scaled_medium = ScaledMedium(medium=scaled, **delta_m_arrays)
     twilight = twilight_scale(medium)

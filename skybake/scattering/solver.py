@@ -49,6 +49,10 @@ COARSE_ORDER = 3
 DIVERGED = 0.5
 """Relative change that no iteration which will converge shows after `SURE_PASSES`."""
 
+SINGLE, BENT, SETTLED, SCATTERED = 0.25, 0.35, 0.45, 0.6
+"""Shares of the work that are usually done with sunlight scattered once, its aureole, the light of
+few harmonics, and the first scattering of all."""
+
 SURE_PASSES = 40
 """Passes after which what is left, such as twilight far darker than the day, is mixed by itself."""
 
@@ -100,19 +104,23 @@ def solve_light(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> Atmosphe
     is_peaked = has_aureole(atmosphere)
     of_first, radiance = (empty_radiance(scaled, grid) if is_peaked else None for _ in range(2))
     first = scatter_sunlight(atmosphere, grid, workers, of_first)
+    workers.tell(SINGLE)
     if is_peaked:
         aureole, bent = solve_aureole(atmosphere, grid, dark, workers)
         atmosphere, first = atmosphere._replace(aureole=aureole), sum_fields(first, bent, 1.0)
+        workers.tell(BENT)
 
     def settle(new: DiffuseField, total: DiffuseField) -> DiffuseField:
         return _settle(scaled, new, total, coarse_grid, coarse_rays, workers)
 
     new = lower_order(first, COARSE_ORDER)
     field = raise_order(settle(new, new), new, first)
+    workers.tell(SETTLED)
     scattered = scatter_field(scaled, field, grid, rays, workers)
+    workers.tell(SCATTERED)
     field = sum_fields(first, scattered, 1.0)
     mixing, unit = Anderson(scaled.mixture.size), _brightness(field)
-    for _ in range(MAX_PASSES):
+    for turn in range(MAX_PASSES):
         scattered = scatter_field(scaled, field, grid, rays, workers, radiance)
         image = sum_fields(first, scattered, 1.0)
         total = lower_order(image, COARSE_ORDER)
@@ -121,6 +129,8 @@ def solve_light(atmosphere: Atmosphere, workers: Workers = ALL_CPUS) -> Atmosphe
         image = raise_order(settled, new, image)
         field = _field(image, mixing.step(_state(field) / unit, _state(image) / unit) * unit)
         change = _relative(_state(settled) - _state(new), _state(total), grid)
+        # Each pass may be the last.
+        workers.tell(1.0 - (1.0 - SCATTERED) / (turn + 2.0))
         if change.max() < TOLERANCE:
             if of_first is not None and radiance is not None:
                 # The field's moments are settled since, which changes the difference little.

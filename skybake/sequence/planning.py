@@ -22,8 +22,10 @@ from skybake.optics.changes import PresetChanges
 from skybake.preset import Planet, planet_name
 from skybake.sequence.exposure_curve import ExposureCurve
 from skybake.sequence.frames import FramePattern, parse_frames
+from skybake.sequence.moon_path import MoonPath
 from skybake.sequence.plan import Frame, Plan
 from skybake.sequence.ramp import Ramp, shares
+from skybake.sequence.ramp import at_share as value_at
 
 
 def plan_sequence(
@@ -39,6 +41,7 @@ def plan_sequence(
     settings: MapSettings | None = None,
     exposure_curve: ExposureCurve | str | Path | None = None,
     cloud_time: float | Ramp | None = None,
+    moon_path: MoonPath | None = None,
     eclipses: bool = True,
     output: str | Path | None = None,
     preview: str | Path | bool = False,
@@ -74,6 +77,8 @@ def plan_sequence(
     cloud_time : float or Ramp, optional
         For which clouds have drifted; by default, with times of Earth's clock, as long as since
         the first of them, else as in `settings`. [s]
+    moon_path : MoonPath, optional
+        Where the Moon stands as a light, if not by `times`.
     eclipses : bool, optional
         Put the planet's moons in front of the sun where they are at the times, unless there is one
         in `settings`.
@@ -94,7 +99,12 @@ def plan_sequence(
     """
     settings = settings or MapSettings()
     if times is not None:
-        for name, value in (("sun_elevation", sun_elevation), ("sun_azimuth", sun_azimuth)):
+        by_hand = {
+            "sun_elevation": sun_elevation,
+            "sun_azimuth": sun_azimuth,
+            "moon_path": moon_path,
+        }
+        for name, value in by_hand.items():
             if value is not None:
                 raise ArgumentError(f"{{{name}}}: cannot be combined with {{times}}")
     if isinstance(times, TimeSpan) and times.altitude is None:
@@ -138,6 +148,8 @@ def plan_sequence(
             settings.night if moment is None else night_at(settings.night, moment),
             settings.moonlight if moment is None else moonlight_at(settings.moonlight, moment),
         )
+        if moon_path is not None:
+            at_share = _with_moon(at_share, moon_path, share)
         planned.append(
             Frame(
                 number=number,
@@ -242,7 +254,13 @@ def _drift(moments: Sequence[Moment]) -> list[float] | None:
 
 
 def _at(value: float | Ramp | None, share: float) -> float | None:
-    return value.at(share) if isinstance(value, Ramp) else value
+    return None if value is None else value_at(value, share)
+
+
+def _with_moon(settings: MapSettings, path: MoonPath, share: float) -> MapSettings:
+    lighting = settings.lighting
+    moon = path.at(share, lighting.sun_azimuth, lighting.sun_elevation)
+    return replace(settings, moonlight=replace(settings.moonlight, moon=moon))
 
 
 def _ends(altitude: float | Ramp | None, default: float) -> tuple[float, float]:

@@ -24,6 +24,11 @@ class Ramp:
         return (1.0 - share) * self.first + share * self.last
 
 
+def at_share(value: float | Ramp, share: float) -> float:
+    """Value of what may change, after a share of the way."""
+    return value.at(share) if isinstance(value, Ramp) else value
+
+
 def shares(numbers: Sequence[int]) -> list[float]:
     """How far along each frame is from the first to the last, 0 to 1."""
     first, span = numbers[0], numbers[-1] - numbers[0]

@@ -71,11 +71,18 @@ class ExtendedSky:
         ndarray of float64, shape (ray, wavelength)
             What passes of the source itself, with `passing`, is to be added.
         """
-        lit = self._lit._replace(field=self._field_of(source))
-        mu_s, nu = _overhead(self._atmosphere.medium.r_bottom, self._radius, mu)
+        lit = self.lit_by(source)
+        mu_s, nu = overhead(self._atmosphere.medium.r_bottom, self._radius, mu)
         start = np.full(mu.shape, self._radius)
         diffuse = trace_rays(lit, start, mu, mu_s, nu, workers=workers).diffuse
         return diffuse[:, : self._wavelengths].astype(np.float64)
+
+    def lit_by(self, source: Array) -> Atmosphere:
+        """Atmosphere whose diffuse light is that of a source, as of `scattered`, for every sun.
+
+        Rays that begin with `overhead` gather what is scattered of it, from anywhere.
+        """
+        return self._lit._replace(field=self._field_of(source))
 
     def ground_radiance(self, source: Array) -> Array:
         """Radiance of the ground below a source, as of `scattered`, shape (wavelength,)."""
@@ -92,7 +99,7 @@ class ExtendedSky:
         ndarray of float64, shape (ray, wavelength)
             0 where the ground is in the way.
         """
-        return _transmittance(self._atmosphere, self._radius, mu)[:, : self._wavelengths]
+        return transmittance_to_space(self._atmosphere, self._radius, mu)[:, : self._wavelengths]
 
     @cached_property
     def _straight(self) -> Straight:
@@ -106,7 +113,7 @@ class ExtendedSky:
         passing, moments = [], []
         for altitude, mu, weight in zip(grid.altitude, grid.mu, grid.weight, strict=True):
             radius = bottom + max(altitude, LOWEST_EYE)
-            passing.append(_transmittance(atmosphere, radius, mu))
+            passing.append(transmittance_to_space(atmosphere, radius, mu))
             moments.append(harmonics_at(harmonics, mu) * (2.0 * math.pi * weight)[:, None])
         # Just below the horizontal the source is as at the horizon.
         zenith = np.arccos(np.clip(grid.mu, 0.0, 1.0))
@@ -130,7 +137,7 @@ class ExtendedSky:
         even[plain : plain + 1] = True
         radiance = np.zeros((len(field.altitude), *field.radiance.shape[2:]))
         radiance[:, even] = np.einsum("sk,aslk->alk", weights, field.radiance[:, :, even])
-        seen = _at_angles(theta, spectral, straight.zenith) * straight.passing
+        seen = at_angles(theta, spectral, straight.zenith) * straight.passing
         radiance[:, :plain][:, even[:plain]] += np.einsum("aml,amk->alk", straight.moments, seen)
         ground = np.einsum("sk,sk->k", weights, field.ground) + straight.downward @ seen[0]
         suns = len(field.sun_angle)
@@ -161,7 +168,11 @@ class Straight(NamedTuple):
     downward: Array
 
 
-def _transmittance(atmosphere: Atmosphere, radius: float, mu: Array) -> Array:
+def transmittance_to_space(atmosphere: Atmosphere, radius: float, mu: Array) -> Array:
+    """Share of a wide source's light that arrives as of `ExtendedSky.passing`, (ray, wavelength).
+
+    At a distance from the planet's centre [km], from the zenith angles with cosines `mu`.
+    """
     medium = atmosphere.scaled.medium
     columns, visible = np.empty((mu.size, len(medium.extinction))), np.empty(mu.size, np.bool_)
     fill_sight_columns(medium, atmosphere.columns, radius, mu, columns, visible)
@@ -169,8 +180,12 @@ def _transmittance(atmosphere: Atmosphere, radius: float, mu: Array) -> Array:
     return np.where(visible[:, None], passing, 0.0)
 
 
-def _at_angles(theta: Array, source: Array, zenith: Array) -> Array:
-    """Return a source at zenith angles of any shape, linear between even steps."""
+def at_angles(theta: Array, source: Array, zenith: Array) -> Array:
+    """Return a source at zenith angles [rad] of any shape, linear between even steps.
+
+    `theta` are the steps, and `source` is of shape (STEPS, wavelength); beyond the last it is
+    as there.
+    """
     x = np.clip(zenith / (theta[1] - theta[0]), 0.0, STEPS - 1.0)
     below = np.minimum(x.astype(np.int64), STEPS - 2)
     share = (x - below)[..., None]
@@ -204,9 +219,18 @@ def _sun_shares(sun_angle: Array, theta: Array, source: Array) -> Array:
     return shares
 
 
-def _overhead(r_bottom: float, radius: float, mu: Array) -> tuple[Array, Array]:
+def overhead(r_bottom: float, radius: float, mu: Array) -> tuple[Array, Array]:
     """Cosines mu_s and nu of a sun that is high wherever a ray passes the air.
 
+    Parameters
+    ----------
+    r_bottom, radius : float
+        Distances of the ground and of the ray's start from the planet's centre. [km]
+    mu : ndarray of float64, shape (ray,)
+        Cosines of zenith angles.
+
+    Notes
+    -----
     All suns have the same field, but lookups between them are exact only by day. It is overhead
     where the ray hits the ground, or where it is closest to it.
     """

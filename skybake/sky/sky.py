@@ -16,7 +16,7 @@ from skybake.jit.workers import ALL_CPUS, Workers
 from skybake.optics.medium import Array, build_medium
 from skybake.optics.spectrum import limb_darkening, star_at, star_irradiance
 from skybake.preset import Planet, Star, load_preset
-from skybake.scattering.atmosphere import is_stored, load_atmosphere
+from skybake.scattering.atmosphere import atmosphere_key, is_stored, load_atmosphere
 from skybake.scattering.tables import Atmosphere
 from skybake.sky.closure import check_closure
 from skybake.sky.observer import Observer
@@ -199,6 +199,11 @@ class Sky:
         """The light of the sky that reaches the observer."""
         kind = SingleSkylight if self.method == "march" else Skylight
         return kind(self.atmosphere, self._observer, (self.source,), workers=self.workers)
+
+    @cached_property
+    def atmosphere_key(self) -> str:
+        """Name of the tables of this atmosphere, see `skybake.scattering.atmosphere`."""
+        return atmosphere_key(self.medium, self.table_method)
 
     @property
     def is_solved(self) -> bool:

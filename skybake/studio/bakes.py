@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from threading import Event
 from typing import Any
@@ -15,7 +16,7 @@ from skybake.baking.paths import preview_beside
 from skybake.baking.write import bake_scene
 from skybake.errors import CancelledError, InputError, SkybakeError
 from skybake.studio.reader import Reader, Request
-from skybake.studio.scenes import Scenes
+from skybake.studio.scenes import SOLVING, Scenes
 from skybake.studio.state import State
 
 Tell = Callable[[dict[str, Any]], None]
@@ -74,10 +75,11 @@ class Bakes:
             tell({"bake": number, "stage": stage, "progress": share})
 
         try:
-            scene = self._scenes.scene(request, request.settings, cancel)
+            solving = partial(report, SOLVING)
+            scene = self._scenes.scene(request, request.settings, cancel, solving)
             scene.workers.check()
             if not scene.sky.is_solved:
-                report("solving atmosphere")
+                report(SOLVING)
             baked = bake_scene(
                 scene,
                 path,

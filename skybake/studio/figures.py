@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Mapping
 from typing import Any
@@ -18,11 +19,16 @@ from skybake.image.meter import scene_ev, scene_white
 from skybake.image.moon_figures import moon_figures
 from skybake.image.picture_settings import PictureSettings
 from skybake.image.scene import Scene
+from skybake.jit.kept import Kept
 from skybake.optics.haze import HAZE_WAVELENGTH, visibility
 from skybake.optics.medium import build_medium, vertical_optical_depth
 from skybake.preset import Planet
 
+_KEPT_WORLDS = 8
 _IDENTITY = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]
+
+
+_airs: Kept[str, dict[str, float | None]] = Kept(_KEPT_WORLDS)
 
 
 def figures_of(scene: Scene, picture: PictureSettings) -> dict[str, Any]:
@@ -96,8 +102,17 @@ def exposures(
     }
 
 
+def world_key(planet: Planet) -> str:
+    """Return a text that all worlds made alike share, and no others."""
+    return json.dumps(planet.recipe, sort_keys=True, default=str)
+
+
 def air_figures(planet: Planet) -> dict[str, float | None]:
     """Return the optical depth at 550 nm and the visibility [km] of a world; None where unknown."""
+    return _airs.get(world_key(planet), lambda: _air_figures(planet))
+
+
+def _air_figures(planet: Planet) -> dict[str, float | None]:
     try:
         medium = build_medium(planet, np.array([HAZE_WAVELENGTH]))
         depth = float(vertical_optical_depth(medium).sum())

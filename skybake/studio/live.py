@@ -50,7 +50,8 @@ class Live:
 
     async def serve(self, request: web.Request) -> web.WebSocketResponse:
         """Serve the socket until the page closes it."""
-        socket = web.WebSocketResponse(max_msg_size=LARGEST_BODY, heartbeat=30.0)
+        # Nothing leaves this machine, and to compress takes longer than to send.
+        socket = web.WebSocketResponse(max_msg_size=LARGEST_BODY, heartbeat=30.0, compress=False)
         await socket.prepare(request)
         sender = asyncio.create_task(self._send_all(socket))
         self._socket = socket

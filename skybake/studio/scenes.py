@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import replace
@@ -17,6 +16,7 @@ from skybake.image.settings import Encoding, MapSettings, View
 from skybake.jit.workers import ALL_CPUS
 from skybake.pipeline.stages import CoarseStages, KeptStages
 from skybake.projection import Equirect, Perspective
+from skybake.studio.figures import world_key
 from skybake.studio.reader import Request
 
 KEPT_SCENES = 4
@@ -57,7 +57,13 @@ class Scenes:
         self._kept: OrderedDict[str, Finished] = OrderedDict()
         self._lock = Lock()
 
-    def scene(self, request: Request, settings: MapSettings, cancel: Event) -> Scene:
+    def scene(
+        self,
+        request: Request,
+        settings: MapSettings,
+        cancel: Event,
+        listener: Callable[[float], None] | None = None,
+    ) -> Scene:
         """Return a new scene.
 
         Parameters
@@ -68,8 +74,11 @@ class Scenes:
             What is seen of it.
         cancel : threading.Event
             Stops the work.
+        listener : callable, optional
+            Called with the share of the atmosphere's solution that is done.
         """
-        return self._made(request, settings, cancel, self._stages)
+        workers = ALL_CPUS.with_cancel(cancel, listener)
+        return Scene(request.planet, settings, workers, self._stages)
 
     def finished(self, request: Request, settings: MapSettings) -> Finished | None:
         """Return the scene of a request before, if it is kept."""
@@ -88,7 +97,8 @@ class Scenes:
         is_traced = self._stages.has_traced(scene.sky)
         if scene.planet.clouds or is_traced or not CoarseStages.has_fewer_rays(scene.sky):
             return scene
-        return self._made(request, scene.settings, cancel, self._coarse_stages)
+        workers = ALL_CPUS.with_cancel(cancel)
+        return Scene(request.planet, scene.settings, workers, self._coarse_stages)
 
     def keep(self, request: Request, scene: Scene, pixels: Pixels) -> None:
         """Keep a scene that is finished, for requests that only show it otherwise."""
@@ -96,10 +106,6 @@ class Scenes:
             self._kept[_key(request, scene.settings)] = Finished(scene, pixels)
             while len(self._kept) > KEPT_SCENES:
                 self._kept.popitem(last=False)
-
-    @staticmethod
-    def _made(request: Request, settings: MapSettings, cancel: Event, stages: KeptStages) -> Scene:
-        return Scene(request.planet, settings, ALL_CPUS.with_cancel(cancel), stages)
 
 
 def equirect_settings(request: Request) -> MapSettings:
@@ -149,5 +155,4 @@ def _seen(request: Request, view: View) -> MapSettings:
 
 
 def _key(request: Request, settings: MapSettings) -> str:
-    recipe = json.dumps(request.planet.recipe, sort_keys=True, default=str)
-    return f"{recipe}\n{settings!r}"
+    return f"{world_key(request.planet)}\n{settings!r}"

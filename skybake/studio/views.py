@@ -5,6 +5,7 @@ from __future__ import annotations
 import shlex
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from threading import Event, Lock
 from typing import Any
 
@@ -164,17 +165,20 @@ def _answer(view: ViewRequest, reader: Reader, scenes: Scenes, send: Send) -> No
         lit = {**figures, **exposures(figures, request.picture, scale)}
         send(message({**header, **sized, "figures": lit}, texels))
 
+    def tell(name: str, share: float | None) -> None:
+        send({"id": view.number, "stage": name, "progress": share})
+
     def stage(name: str, share: float | None) -> None:
         view.enter_slow()
         view.is_solving = name == SOLVING
-        send({"id": view.number, "stage": name, "progress": share})
+        tell(name, share)
 
     finished = scenes.finished(request, settings)
     if finished is not None and finished.pixels.shape[1::-1] == view.size:
         show(finished.pixels, figures_of(finished.scene, request.picture), is_final=True)
         return
     if finished is None:
-        scene = scenes.scene(request, settings, view.cancel)
+        scene = scenes.scene(request, settings, view.cancel, partial(tell, SOLVING))
         solve(scene, stage)
         first = scenes.first_glance(request, scene, view.cancel)
         prepare(first, stage)

@@ -5,13 +5,19 @@ import math
 import numpy as np
 import pytest
 
-from skybake.aerial.air import Depths, air_before
+from skybake.aerial.air import Air, air_before
 from skybake.aerial.compose import Behind, through_air
+from skybake.aerial.depth import Depths
 from skybake.aerial.froxels import air_by_froxels
 from skybake.aerial.sight import lens_of
+from skybake.aerial.to_space import dim_beyond
+from skybake.ephemeris.lit_moon import moon_by_hand
+from skybake.image.apart import evaluate_transmittance
+from skybake.image.moonlight import Moonlight
 from skybake.optics.changes import PresetChanges
 from skybake.preset import load_preset
 from skybake.projection.camera import camera_from_angles
+from skybake.projection.gnomonic import GnomonicChart
 from tests.aerial.pictures import scene
 
 SIZE = 96, 54
@@ -102,13 +108,23 @@ def test_froxels_differ_by_less_than_a_percent():
     assert passing.max() < 3e-3
 
 
-def test_far_away_the_air_is_the_sky():
-    made, camera = scene(20.0, 0.1), camera_to(120.0, 25.0)
+def moonlit():
+    """A night with a half moon in the west."""
+    moon = moon_by_hand(
+        math.radians(270.0), math.radians(35.0), math.radians(90.0), math.pi, math.radians(-25.0)
+    )
+    return scene(-25.0, 0.1, moonlight=Moonlight(moon))
+
+
+@pytest.mark.parametrize("light", [lambda: scene(20.0, 0.1), moonlit], ids=["sun", "moon"])
+def test_far_away_the_air_is_the_sky(light):
+    made, camera = light(), camera_to(120.0, 25.0)
     far = Depths(np.full(SIZE[::-1], 5000.0, np.float32), 1.0, False)
     air = air_before(made, lens_of(camera, SIZE), far)
     window = (0, 0, *SIZE)
     sky = Behind(made, camera, SIZE, window).sky
     above = rays(camera)[..., 1] > 0.02
+    assert sky[above].min() > 0.0
     np.testing.assert_allclose(air.light[above], sky[above], rtol=3e-3)
 
 
@@ -218,3 +234,22 @@ def test_from_space_there_is_no_air_before_it_begins():
     light, passing = traced(made, rays(camera)[chosen], distance[chosen] * (1.0 - 1e-6))
     assert np.abs(air.light[chosen] / light - 1.0).max() < 0.01
     assert np.abs(air.passing[chosen] - passing).max() < 0.01
+
+
+@pytest.mark.parametrize(
+    ("altitude", "look", "fov"), [(0.002, 5.0, 50.0), (10.0, -2.0, 9.0), (400.0, -17.0, 20.0)]
+)
+def test_light_from_space_is_dimmed_as_the_transmittance_of_a_map_says(altitude, look, fov):
+    """Within 0.002, also in pixels that the horizon divides."""
+    made, camera = scene(20.0, altitude), camera_to(120.0, look, fov, roll=20.0)
+    shape = SIZE[::-1]
+    air = Air(np.zeros((*shape, 3), np.float32), np.full((*shape, 3), 9.0, np.float32))
+    depth = np.full(shape, np.inf, np.float32)
+    depth[:, ::5] = 3.0
+    dim_beyond(made, lens_of(camera, SIZE), Depths(depth, 1.0, False), air)
+    assert (air.passing[:, ::5] == 9.0).all()
+    chart = GnomonicChart(camera.axes, camera.half_width, camera.half_height, *SIZE)
+    expected = evaluate_transmittance(made, *chart.looks(0, SIZE[1]))
+    is_far = np.isinf(depth)
+    assert np.ptp(expected) > 0.4
+    np.testing.assert_allclose(air.passing[is_far], expected[is_far], atol=2e-3)

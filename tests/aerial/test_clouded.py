@@ -5,14 +5,19 @@ import math
 import numpy as np
 import pytest
 
-from skybake.aerial.air import Depths, air_before
+from skybake.aerial.air import air_before
+from skybake.aerial.bake import bake_aerial
 from skybake.aerial.clouded import with_clouds
+from skybake.aerial.depth import Depths
 from skybake.aerial.sight import lens_of
+from skybake.aerial.source import Reading, read_source
+from skybake.formats.exr_layers import read_exr
 from skybake.image.scene import Scene
 from skybake.image.settings import map_settings
 from skybake.preset import load_preset
 from skybake.projection.camera import Camera
 from skybake.projection.frame import look_frame
+from tests.aerial.pictures import beauty, write_exr
 
 OVERCAST = load_preset("earth-overcast")
 FIELD = math.radians(30.0)
@@ -21,7 +26,11 @@ WIDTH, HEIGHT = 12, 8
 
 def scene(altitude):
     settings = map_settings(
-        None, sun_elevation=math.radians(40.0), altitude=altitude, clouds_quality="draft"
+        None,
+        sun_elevation=math.radians(40.0),
+        altitude=altitude,
+        method="hillaire",
+        clouds_quality="draft",
     )
     return Scene(OVERCAST, settings)
 
@@ -107,3 +116,21 @@ def test_a_thing_sinks_into_a_deck_by_and_by(above):
     assert (np.diff(mean) < 0.02).all()
     # The deck gets brighter as more of it is before the thing.
     assert clouded.light[:, -1].mean() > 3.0 * clouded.light[:, 0].mean()
+
+
+@pytest.mark.slow
+def test_clouds_hide_light_that_comes_from_infinity(below, tmp_path):
+    """As stars, which a renderer has drawn where nothing else is."""
+    camera = Camera(np.array(look_frame(math.pi, 1.0)), 0.3, 0.2)
+    nothing = np.full((HEIGHT, WIDTH), np.inf)
+    seen = []
+    for light in (0.0, 1.0):
+        path = tmp_path / f"{light}.exr"
+        write_exr(path, beauty(nothing, light), kinds=dict.fromkeys("RGBZ", "float"))
+        out = tmp_path / "out.exr"
+        bake_aerial(below, read_source(path, None, Reading()), camera, out)
+        (part,) = read_exr(out)
+        seen.append(part.plane("G"))
+    dark, bright = seen
+    assert dark.min() > 0.0
+    assert (bright - dark).max() < 0.05

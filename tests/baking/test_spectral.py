@@ -9,11 +9,16 @@ import OpenEXR
 import pytest
 
 import skybake
+from skybake.clouds.at_wavelengths import cubic_shares, nodes_among
 from skybake.colour.observer import LUMINOUS_EFFICACY, load_observer
 from skybake.formats.reader import read_attributes
 from skybake.formats.spectral_exr import read_stokes_channel, stokes_channel
+from skybake.image.bands import spectral_scenes
+from skybake.image.scene import Scene
 from skybake.image.sensor import DEFAULT_WAVELENGTHS, Sensor
-from skybake.optics.spectrum import hat_means
+from skybake.image.settings import Clouds
+from skybake.inspect.clouded import clouded_light
+from skybake.optics.spectrum import hat_means, hats_at
 from skybake.sky.disc import Disc
 from skybake.sky.sky import Sky
 from tests.cli.runs import invoke, listing
@@ -164,7 +169,6 @@ def test_a_recipe_and_a_name_tell_the_wavelengths(baked):
         ("earth", {"wavelengths": (300.0, 400.0)}, r"wavelength must be within .* got 300 nm"),
         ("earth", {"wavelengths": (500.0, 500.0)}, "spectral: wavelengths must ascend"),
         ("earth", {"wavelengths": ()}, "spectral: must be 1 to 512 wavelengths, got 0"),
-        ("earth-fair", {}, "spectral: needs a world without clouds"),
         ("earth-hillaire2020", {"wavelengths": (500.0,)}, "needs a preset of rendering spectral"),
         ("earth", {"mips": True}, "must be without mips"),
         ("earth", {"layers": True}, "must be without layers"),
@@ -229,18 +233,56 @@ def test_frames_of_a_sequence_have_spectra_too(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     "options",
     [
-        ("--moon-elevation", "20deg", "--sun", "10deg"),
+        ("--moon-elevation", "20deg", "--sun", "-30"),
         ("--lst", "3h", "--lat", "30", "--sun", "-30"),
+        ("--lst", "3h", "--lat", "30", "--sun", "-30", "--light-pollution", "5mcd"),
     ],
 )
-def test_lights_that_an_eye_alone_knows_are_refused(tmp_path, monkeypatch, options):
+def test_spectra_of_lights_of_the_night_have_the_luminance_of_the_map(
+    tmp_path, monkeypatch, options
+):
+    """Lines of the airglow included, each of which is spread over the channels beside it."""
     monkeypatch.chdir(tmp_path)
-    result = invoke(
-        "render", "--size", "32", "--spectral", "500,600", "--method", "hillaire", *options, "-q"
-    )
-    assert result.exit_code == 1
-    assert "needs a map without lights of the night" in result.stderr
-    assert listing(tmp_path) == []
+    quickly = ("--size", "32", "--method", "hillaire", "--pixel", "float", "-q")
+    result = invoke("render", *quickly, "--spectral", *options, "-o", "night.exr")
+    assert result.exit_code == 0, result.stderr
+    found, header = channels(tmp_path / "night.exr")
+    weights = np.array([0.2126390, 0.7151687, 0.0721923]) * header["whiteLuminance"]
+    seen = np.stack([found[name] for name in "RGB"], axis=-1) @ weights
+    _, radiance = spectrum(tmp_path / "night.exr")
+    assert radiance.min() > 0.0
+    assert luminance(radiance) == pytest.approx(seen, rel=2e-3)
+
+
+def test_the_green_line_is_in_the_channels_beside_it():
+    wavelengths = np.array([440.0, 550.0, 560.0, 675.0])
+    hats = hats_at(np.array([557.7, 558.0, 600.0]), wavelengths)
+    # 557.7 is nearer to 560, and the hat of 550 reaches 25 nm down and 10 up.
+    assert hats[0] == pytest.approx([0.0, 0.23 / 17.5, 0.77 / 17.5, 0.0], rel=1e-6)
+    assert (hats[2] == 0.0).all()
+
+
+def test_clouds_have_the_spectrum_of_rays():
+    """At wavelengths too between those at which the light of clouds is solved for."""
+    nodes = np.linspace(420.0, 680.0, 14)
+    assert nodes_among(nodes).size == 7
+    planet = skybake.load_preset("earth-overcast")
+    scene = Scene(planet, quick(32, tuple(nodes.tolist())))
+    bands = spectral_scenes(scene)
+    sky = bands[0][0].sky
+    zenith, azimuth = np.array([0.3, 0.9, 1.4]), np.array([1.0, 4.0, 2.0])
+    places = zenith[:, None], azimuth[:, None], np.full((3, 1), 1e-4)
+    found = np.concatenate([band.evaluate(*places)[:, 0] for band, _ in bands[2:4]], axis=1)
+    light = np.diag(hat_means(sky.star.irradiance, nodes))[:, 6:12:2]
+    rays = clouded_light(planet, sky, zenith, azimuth, light, Clouds())
+    assert found[:, ::2] == pytest.approx(rays, rel=5e-3)
+
+
+def test_cubics_through_nodes_are_exact_for_cubics():
+    nodes, at = np.array([400.0, 450.0, 500.0, 560.0, 600.0]), np.linspace(400.0, 600.0, 23)
+    shares = cubic_shares(nodes, at)
+    assert (nodes / 500.0) ** 3 @ shares == pytest.approx((at / 500.0) ** 3, rel=1e-12)
+    assert shares.sum(axis=0) == pytest.approx(np.ones(23))
 
 
 def test_stars_that_the_day_outshines_are_in_no_spectrum(tmp_path):

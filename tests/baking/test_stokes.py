@@ -2,6 +2,7 @@
 
 import math
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import OpenEXR
@@ -154,7 +155,6 @@ def test_a_polarised_spectrum_is_in_the_layout(tmp_path):
 @pytest.mark.parametrize(
     ("preset", "values", "problem"),
     [
-        ("earth-fair", {}, "stokes: needs a world without clouds"),
         ("earth", {"method": "hillaire"}, "stokes: needs the method full"),
         ("earth", {"below_horizon": "extend"}, "stokes: needs ground or black"),
         ("earth", {"mips": True}, "must be without mips"),
@@ -164,6 +164,30 @@ def test_polarisation_that_is_not_known_is_refused_in_a_line(tmp_path, preset, v
     with pytest.raises(skybake.InputError, match=problem):
         skybake.bake(preset, tmp_path / "a.exr", settings(**values))
     assert listing(tmp_path) == []
+
+
+@pytest.mark.slow
+def test_light_from_a_deck_is_unpolarised_and_the_sky_above_it_is_not(tmp_path):
+    deck = skybake.load_preset("earth-overcast")
+    degrees = {}
+    for name, planet, altitude in (
+        ("beneath", deck, 0.0),
+        ("above", deck, 12.0),
+        ("clear", replace(deck, clouds=()), 12.0),
+    ):
+        shown = settings(32, altitude=altitude, sun_disc="exclude")
+        baked = skybake.bake(planet, tmp_path / "a.exr", shown)
+        assert any("clouds scatter" in line for line in baked.warnings) is bool(planet.clouds)
+        stokes = components(tmp_path / "a.exr") @ LUMINANCE
+        degrees[name] = np.hypot(stokes[1], stokes[2]) / stokes[0]
+        assert degrees[name].max() <= 1.0
+    assert degrees["beneath"][:7].max() < 5e-3
+    # Clouds below brighten the sky above by light without polarisation.
+    ratio = degrees["above"][:7] / degrees["clear"][:7]
+    assert ratio.max() < 1.02
+    assert np.median(ratio) > 0.7
+    # Of what is seen of the deck itself, only the air before it is polarised.
+    assert (degrees["above"][9:] < degrees["clear"][9:]).all()
 
 
 def test_a_filter_leaves_no_components():

@@ -301,3 +301,27 @@ def test_at_night_the_lights_that_are_not_in_the_air_are_told(scene):
     assert result.exit_code == 0
     assert "warning: sun is more than 18 degrees below the horizon" in result.stderr
     assert (scene / "o.exr").exists()
+
+
+@pytest.mark.usefixtures("warm")
+def test_by_moonlight_the_air_is_not_dark(scene):
+    """A full Moon gives 0.2 lx, and 1 stands for 0.15 cd/m2."""
+    night = ("--sun=-30deg", "--ev=-3")
+    result = aerial(*night, "--moon-elevation", "40deg", "--moon-phase", "full")
+    assert result.exit_code == 0
+    assert "warning" not in result.stderr
+    lit = pixels("out.exr")
+    far = np.array(lit - done(*night))[-1, :, :3]
+    assert 0.01 < far.min() < far.max() < 0.5
+
+
+def test_what_the_moon_needs_is_told(scene):
+    for given, problem in (
+        (("--moon", "include"), "include needs --time or --moon-elevation"),
+        (("--moon-phase", "full"), "needs --moon-elevation"),
+        (("--moon-elevation", "95deg"), "--moon-elevation"),
+    ):
+        result = aerial(*given)
+        assert result.exit_code == 2
+        assert problem in " ".join(result.stderr.split())
+    assert "out.exr" not in listing(scene)

@@ -70,7 +70,9 @@ def test_a_probe_sees_ground_below_and_nothing_above():
 
 @pytest.mark.parametrize("method", ["full", "reference"])
 def test_where_nothing_scatters_light_its_polarisation_is_refused(method):
-    result = invoke("probe", *NO_AIR, "--stokes", "--method", method, "--samples", "2")
+    Path("in.csv").write_text("view_zenith_deg,relative_azimuth_deg\n30,0\n", "utf-8")
+    few = ("--directions", "in.csv", "--wavelengths", "550", "--samples", "2")
+    result = invoke("probe", *NO_AIR, "--stokes", "--method", method, *few)
     assert result.exit_code == 1
     told = "polarisation: world must have something that scatters light, got none"
     assert result.output == f"skybake: {told}\n"

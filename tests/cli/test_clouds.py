@@ -5,7 +5,7 @@ import sys
 import numpy as np
 import pytest
 
-from tests.cli.runs import run
+from tests.cli.runs import invoke, run
 
 MODULE = """
 import numpy as np
@@ -39,16 +39,16 @@ def openvdb(tmp_path, monkeypatch):
 def test_a_tile_that_was_written_is_a_tile(tmp_path):
     path = tmp_path / "cloud.npz"
     layer = "cirrus:0.5,base=8km,depth=1km"
-    status, output, errors = run("clouds", "tile", "earth", "--clouds", layer, "-o", path)
-    assert (status, errors) == (0, "")
-    assert output.startswith("base 7.9")
+    made = invoke("clouds", "tile", "earth", "--clouds", layer, "-o", path)
+    assert (made.exit_code, made.stderr) == (0, "")
+    assert made.stdout.startswith("base 7.9")
     with np.load(path) as arrays:
         values, spacing = arrays["extinction_per_km"], arrays["spacing_km"]
     depth = values.sum(0) * spacing[0]
     assert depth.mean() == pytest.approx(0.15, rel=0.1)
     preset = tmp_path / "own.toml"
     preset.write_text('extends = "earth"\n[clouds.own]\ntile = "cloud.npz"\nbase_km = 8.0\n')
-    assert run("presets", "check", preset)[0] == 0
+    assert invoke("presets", "check", preset).exit_code == 0
 
 
 @pytest.mark.parametrize(
@@ -75,9 +75,9 @@ def test_a_tile_that_was_written_is_a_tile(tmp_path):
 )
 def test_what_cannot_be_written_is_one_line(tmp_path, monkeypatch, arguments, status, message):
     monkeypatch.chdir(tmp_path)
-    got, _, errors = run("clouds", *arguments)
-    assert (got, errors.count("\n")) == (status, 1)
-    assert message in errors
+    refused = invoke("clouds", *arguments)
+    assert (refused.exit_code, refused.stderr.count("\n")) == (status, 1)
+    assert message in refused.stderr
     assert not list(tmp_path.iterdir())
 
 

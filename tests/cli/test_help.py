@@ -8,7 +8,7 @@ import click
 import pytest
 
 import skybake
-from skybake.aerial import bake
+from skybake.aerial import bake, source
 from skybake.aerial.depth import BACKGROUNDS
 from skybake.cli import main
 from skybake.colour.camera import CAMERA_WHITES
@@ -19,6 +19,7 @@ from skybake.commands.render import render
 from skybake.formats.preview import VIEWS
 from skybake.image import settings
 from skybake.image.aim import AIMS
+from skybake.image.moonlight import MOONS
 from skybake.image.picture_settings import SHOWN
 from skybake.image.target import TARGETS
 from skybake.preset import preset_names
@@ -120,7 +121,8 @@ def test_choices_are_those_of_the_engine():
     assert choices.VIEWS == VIEWS
     assert choices.AIMS == AIMS
     assert choices.AERIAL_METHODS == bake.METHODS
-    assert choices.DEPTH_KINDS == bake.DEPTH_KINDS
+    assert choices.DEPTH_KINDS == source.DEPTH_KINDS
+    assert set(choices.MOONS_IN_AIR) < set(MOONS)
     assert choices.SKIES_BEHIND == bake.SKIES
     assert tuple(BACKGROUNDS) == choices.DEPTH_BACKGROUNDS
     assert set(choices.CAMERA_UNITS) == set(UNITS_OF_CAMERAS)

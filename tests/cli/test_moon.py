@@ -129,7 +129,6 @@ def test_phase_and_distance_change_from_frame_to_frame(folder):
             (*NIGHT, "--moon", "only", "--stars", "only"),
             "--moon: only cannot be combined with --st",
         ),
-        ((*NIGHT, "--moon", "only", "--clouds", "stratus:0.5"), "moon: only must be in a world w"),
         ((*PLACE, "--time", "4000-01-01T00:00Z"), "--time: must be in the years 1000 to 2999"),
         (
             ("--preset", "mars", "--site", "gale", "--time", "2026-01-01T00:00Z", "--moon", "only"),

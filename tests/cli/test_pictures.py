@@ -1,8 +1,9 @@
-"""Options of pictures, as users type them and in processes of their own."""
+"""Options of pictures, as users type them."""
 
 import json
 import math
 import re
+from contextlib import chdir
 from pathlib import Path
 
 import numpy as np
@@ -10,9 +11,21 @@ import OpenImageIO
 import pytest
 
 from skybake.formats.reader import read_attributes
-from tests.cli.runs import SMALL, invoke, listing, render, run
+from tests.cli.runs import SMALL, invoke, listing
 
 WEST = ("--shot", "270,10,60deg")
+
+
+def done(*arguments):
+    """Exit status and what is printed."""
+    result = invoke(*arguments)
+    return result.exit_code, result.stdout, result.stderr
+
+
+def render(target, *arguments):
+    """Render, which must say nothing; returns the bytes of the map."""
+    assert done("render", *arguments, "-o", target, "--quiet") == (0, "", "")
+    return target.read_bytes()
 
 
 def codes(path):
@@ -21,7 +34,7 @@ def codes(path):
     return picture.get_pixels(OpenImageIO.FLOAT)
 
 
-@pytest.mark.usefixtures("warm")
+@pytest.mark.usefixtures("folder")
 def test_a_picture_changes_nothing_of_its_map(tmp_path):
     arguments = (*SMALL, "--preset", "mars", "--sun", "3deg")
     plain = render(tmp_path / "a.exr", *arguments)
@@ -31,13 +44,13 @@ def test_a_picture_changes_nothing_of_its_map(tmp_path):
     assert codes(tmp_path / "a.png").shape == (576, 1024, 3)
 
 
-@pytest.mark.usefixtures("warm")
+@pytest.mark.usefixtures("folder")
 def test_render_and_preview_tell_the_exposure_and_the_white(tmp_path):
     arguments = ("--preset", "mars", "--sun", "20deg", "--size", "256x128", "-o", "a.exr")
-    status, output, _ = run("render", *arguments, "--preview", cwd=tmp_path)
+    status, output, _ = done("render", *arguments, "--preview")
     assert status == 0
     line = output.splitlines()[1]
-    status, later, _ = run("preview", "a.exr", "-o", "a.png", cwd=tmp_path)
+    status, later, _ = done("preview", "a.exr", "-o", "a.png")
     assert status == 0
     pattern = r"a\.png  exposed for EV ([\d.]+), white is xy ([\d.]+) ([\d.]+)"
     at_once, afterwards = (re.fullmatch(pattern, text.strip()) for text in (line, later))
@@ -48,12 +61,12 @@ def test_render_and_preview_tell_the_exposure_and_the_white(tmp_path):
         pytest.approx(y, abs=2e-3),
     )
     assert ev == pytest.approx(12.0, abs=0.3)
-    status, output, _ = run("render", *arguments, "--preview", "--json", cwd=tmp_path)
+    status, output, _ = done("render", *arguments, "--preview", "--json")
     told = json.loads(output)
     assert [f"{one:.4f}" for one in told["preview_white"]] == line.split()[-2:]
 
 
-@pytest.mark.usefixtures("warm")
+@pytest.mark.usefixtures("folder")
 @pytest.mark.parametrize(
     ("shot", "shown"),
     [("180,-90,40", "ground"), ("180,90,40", "sky"), ("3.14159rad,-1.5707rad,40", "ground")],
@@ -61,7 +74,7 @@ def test_render_and_preview_tell_the_exposure_and_the_white(tmp_path):
 def test_a_shot_looks_where_it_is_told_in_render_and_in_preview(tmp_path, shot, shown):
     arguments = (*SMALL, "--sun", "30deg", "--preview", "at_once.png", "--shot", shot)
     render(tmp_path / "a.exr", *arguments)
-    later = run("preview", "a.exr", "-o", "later.png", "--shot", shot, "-q", cwd=tmp_path)
+    later = done("preview", "a.exr", "-o", "later.png", "--shot", shot, "-q")
     assert later == (0, "", "")
     for name in ("at_once.png", "later.png"):
         red, green, blue = np.median(codes(tmp_path / name), axis=(0, 1))
@@ -98,15 +111,15 @@ def test_a_recipe_that_does_not_fit_is_no_traceback(folder, recipe):
     assert invoke("preview", "a.exr", *WEST).exit_code == 1
 
 
-@pytest.mark.usefixtures("warm")
+@pytest.mark.usefixtures("folder")
 def test_sheets_and_animations_take_shots_and_white_balances(tmp_path):
     arguments = ("--preset", "mars", "--sun", "3..20deg", "--frames", "1-2", *SMALL, "-q")
     pictures = ("--contact-sheet", "sheet.png", "--animate", "a.webp", "--preview")
     found = {}
     for name, options in (("plain", ("--white-balance", "none")), ("shot", WEST)):
         (tmp_path / name).mkdir()
-        result = run("sequence", *arguments, *pictures, *options, cwd=tmp_path / name)
-        assert result == (0, "", "")
+        with chdir(name):
+            assert done("sequence", *arguments, *pictures, *options) == (0, "", "")
         found[name] = {
             file: codes(tmp_path / name / file) for file in ("sheet.png", "a.webp", "mars.0001.png")
         }
@@ -130,7 +143,7 @@ def tiles(path):
     return [half.max(axis=-1).mean() for half in np.array_split(sheet, 2, axis=0 if tall else 1)]
 
 
-@pytest.mark.usefixtures("warm")
+@pytest.mark.usefixtures("folder")
 @pytest.mark.parametrize(
     ("options", "is_adapted"),
     [
@@ -145,18 +158,18 @@ def test_the_tiles_of_a_sheet_are_exposed_each_for_itself_by_default(tmp_path, o
     (tmp_path / "ev.csv").write_text("frame,ev\n1,13\n")
     arguments = ("--sun", "-6..60deg", "--frames", "1-2", "--shot", "0,60,60", *SMALL, "-q")
     arguments += ("--contact-sheet", "s.png", "-o", "a.#.exr")
-    assert run("sequence", *arguments, *options, cwd=tmp_path) == (0, "", "")
+    assert done("sequence", *arguments, *options) == (0, "", "")
     dark, bright = tiles(tmp_path / "s.png")
 
     assert (dark > 0.5 * bright) == is_adapted
 
 
-@pytest.mark.usefixtures("warm")
+@pytest.mark.usefixtures("folder")
 def test_a_sheet_that_adapts_leaves_the_exposure_of_previews_as_it_is(tmp_path):
     arguments = ("sequence", "--sun", "-6..60deg", "--frames", "1-2", *SMALL, "-q", "--preview")
-    assert run(*arguments, cwd=tmp_path) == (0, "", "")
+    assert done(*arguments) == (0, "", "")
     before = [path.read_bytes() for path in sorted(tmp_path.glob("*.png"))]
-    assert run(*arguments, "--contact-sheet", "s.png", cwd=tmp_path) == (0, "", "")
+    assert done(*arguments, "--contact-sheet", "s.png") == (0, "", "")
 
     assert [path.read_bytes() for path in sorted(tmp_path.glob("earth*.png"))] == before
     evs = {read_attributes(path)["skybake:exposureValue"] for path in tmp_path.glob("earth*.png")}

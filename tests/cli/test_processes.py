@@ -28,13 +28,9 @@ def test_bytes_depend_neither_on_the_run_nor_on_the_number_of_threads(tmp_path, 
     assert first == alone
 
 
-def start_large(folder, suffix="exr", **keywords):
+def start_large(folder, suffix="exr", size="8192x4096"):
     """Start a render that takes long, and wait until it writes."""
-    process = start(
-        *("render", "--size", "8192x4096", "-q", "--preview", "-o", f"a.{suffix}"),
-        cwd=folder,
-        **keywords,
-    )
+    process = start(*("render", "--size", size, "-q", "--preview", "-o", f"a.{suffix}"), cwd=folder)
     while not listing(folder):
         assert process.poll() is None
         time.sleep(0.01)
@@ -99,13 +95,15 @@ def test_what_a_killed_process_left_goes_with_the_next_run(tmp_path):
 
 @pytest.mark.usefixtures("warm")
 def test_a_process_leaves_alone_what_another_is_writing(tmp_path):
-    process = start_large(tmp_path)
+    process = start_large(tmp_path, size="4096x2048")
+    process.send_signal(signal.SIGSTOP)
     render(tmp_path / "a.exr", *SMALL)
+    process.send_signal(signal.SIGCONT)
     assert process.poll() is None
     _, errors = process.communicate(timeout=240)
     assert (process.returncode, errors) == (0, "")
     assert listing(tmp_path) == ["a.exr", "a.png"]
-    assert read_image(tmp_path / "a.exr")[0].shape == (4096, 8192, 3)
+    assert read_image(tmp_path / "a.exr")[0].shape == (2048, 4096, 3)
 
 
 def test_an_interrupt_while_kernels_compile_ends_at_once(tmp_path):
@@ -144,9 +142,15 @@ KILLED = {
 }
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("warm")
-@pytest.mark.parametrize("way", KILLED)
+@pytest.mark.parametrize(
+    "way",
+    [
+        pytest.param("render", marks=pytest.mark.slow),
+        pytest.param("cubemap", marks=pytest.mark.nightly),
+        pytest.param("preview", marks=pytest.mark.nightly),
+    ],
+)
 def test_killed_at_any_moment_it_leaves_whole_files_or_none(tmp_path, way):
     """Fifty kills in all; the next run of the same target takes away what they left."""
     begun = time.perf_counter()
@@ -177,9 +181,14 @@ def half_steps(path):
     return np.where(steps & 0x8000, -(steps & 0x7FFF), steps)
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("warm")
-@pytest.mark.parametrize("processor", ["generic", "haswell"])
+@pytest.mark.parametrize(
+    "processor",
+    [
+        pytest.param("generic", marks=pytest.mark.nightly),
+        pytest.param("haswell", marks=pytest.mark.slow),
+    ],
+)
 def test_other_processors_make_the_same_map_but_for_the_last_bit(tmp_path, processor):
     arguments = ("--size", "128x64", "--sun", "-3deg", "--pixel", "half")
     render(tmp_path / "here.exr", *arguments)

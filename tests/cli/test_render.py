@@ -132,8 +132,11 @@ def test_the_file_carries_what_json_says():
         (("--altitude", "30000ft"), "earth_sun30.00deg_9144m_equirect.exr"),
         (("--preset", "mars", "--altitude", "2km"), "mars_sun30.00deg_2000m_equirect.exr"),
         (
-            ("--ground-albedo", "snow", "--sun-azimuth", "450", "--sun-disc", "exclude"),
-            "earth_ground.albedo=snow_sun30.00deg_az090.00deg_nodisc_equirect.exr",
+            (
+                *("--ground-albedo", "snow", "--sun-azimuth", "450", "--sun-disc", "exclude"),
+                *("--method", "hillaire"),
+            ),
+            "earth_ground.albedo=snow_sun30.00deg_az090.00deg_hillaire_nodisc_equirect.exr",
         ),
     ],
 )

@@ -1,7 +1,9 @@
 """``skybake sequence --skip-existing``: what is left alone and what is baked again."""
 
 import hashlib
+import shutil
 import subprocess
+from contextlib import chdir
 from pathlib import Path
 
 import OpenImageIO
@@ -14,6 +16,21 @@ from tests.cli.runs import invoke, listing
 from tests.cli.sequences import DAY, QUICK, THREE, attributes, digests, files, records, sequence
 
 pytestmark = pytest.mark.usefixtures("folder")
+
+
+@pytest.fixture(scope="module")
+def baked_once(tmp_path_factory):
+    """Function that bakes a sequence into the current folder, or copies one of like arguments."""
+    made = {}
+
+    def bake(*arguments):
+        if arguments not in made:
+            made[arguments] = tmp_path_factory.mktemp("sequence")
+            with chdir(made[arguments]):
+                sequence(*arguments)
+        shutil.copytree(made[arguments], Path(), dirs_exist_ok=True)
+
+    return bake
 
 
 @pytest.mark.parametrize("suffix", ["exr", "hdr"])
@@ -35,9 +52,9 @@ def test_a_resumed_run_skips_what_is_whole_and_writes_the_same_manifest(folder, 
     assert digests("*") == before
 
 
-def test_what_a_killed_process_left_goes_when_its_frame_is_found_whole(folder):
+def test_what_a_killed_process_left_goes_when_its_frame_is_found_whole(folder, baked_once):
     arguments = (*DAY, *THREE, "-o", "a.#.exr", "--preview")
-    sequence(*arguments)
+    baked_once(*arguments)
     before = listing(folder)
     for name in ("a.0002.exr", "a.0003.png"):
         digest = hashlib.sha256(name.encode()).hexdigest()[:12]
@@ -112,9 +129,9 @@ def test_a_byte_changed_anywhere_is_noticed(suffix):
     assert path.read_bytes() == content
 
 
-def test_files_without_their_digests_are_baked_again():
+def test_files_without_their_digests_are_baked_again(baked_once):
     arguments = (*DAY, *THREE, "-o", "a.#.exr")
-    sequence(*arguments)
+    baked_once(*arguments)
     (Path(DIGESTS) / "a.0002.exr.sha256").unlink()
     (Path(DIGESTS) / "a.0003.exr.sha256").write_bytes(b"\xff")
     assert sequence(*arguments, "--skip-existing")["baked"] == 2
@@ -189,9 +206,9 @@ CHANGED = [
 
 
 @pytest.mark.parametrize("change", CHANGED, ids=lambda change: change[0])
-def test_files_of_another_recipe_are_baked_again(change):
+def test_files_of_another_recipe_are_baked_again(change, baked_once):
     arguments = (*DAY, *THREE, "-o", "a.#.exr")
-    sequence(*arguments)
+    baked_once(*arguments)
     told = sequence(*arguments, *change, "--skip-existing")
     # The first frame's sun is the same in both ranges.
     assert told["baked"] == (2 if change[0] == "--sun" else 3)
@@ -210,9 +227,9 @@ CHANGED_PICTURES = [
 
 
 @pytest.mark.parametrize(("change", "baked"), CHANGED_PICTURES, ids=str)
-def test_pictures_of_another_exposure_or_view_are_made_again(change, baked):
+def test_pictures_of_another_exposure_or_view_are_made_again(change, baked, baked_once):
     arguments = (*DAY, *THREE, "-o", "a.#.exr", "--preview")
-    sequence(*arguments)
+    baked_once(*arguments)
     told = sequence(*arguments, *change, "--skip-existing")
     assert (told["baked"], told["skipped"]) == (baked, 3 - baked)
     before = digests("*")

@@ -17,6 +17,7 @@ from tests.truth import TRUTH_FOLDER
 RADIANCE = "radiance_per_unit_irradiance_sr-1"
 EAST = math.radians(90.0)
 AT_550 = np.array([550.0])
+COLOURS = np.array([680.0, 550.0, 440.0])
 HILLAIRE = (
     '[constituents]\nozone = "none"\n'
     "[constituents.aerosol]\n"
@@ -162,7 +163,8 @@ def test_an_overcast_brings_the_ground_the_light_of_a_monte_carlo_program(tmp_pa
     rows = cloud_table("cloud_irradiance_STRATUS_TAU8")
     rows = rows[(rows["sun_elevation_deg"] == sun) & (rows["altitude_km"] < 1.0)]
     planet = overcast(tmp_path)
-    clouds = cloudscape(planet, sun, 0.001, "high", wavelengths=rows["wavelength_nm"].astype(float))
+    np.testing.assert_array_equal(rows["wavelength_nm"], COLOURS)
+    clouds = cloudscape(planet, sun, 0.001, "high", wavelengths=COLOURS)
     directions, weight = hemisphere(24)
     radiance = clouds.radiance(directions).reshape(24, 16, 3).mean(axis=1)
     off = weight @ radiance / rows["diffuse_down_irradiance"] - 1.0
@@ -181,11 +183,12 @@ def test_under_a_layer_of_hardly_any_cloud_is_the_light_of_a_clear_sky(tmp_path,
 def stratus_error(folder, sun, altitude):
     rows = cloud_table(f"cloud_STRATUS_TAU8_{altitude}km")
     rows = rows[rows["sun_elevation_deg"] == sun]
-    clouds = cloudscape(overcast(folder), sun, float(altitude), "high")
+    clouds = cloudscape(overcast(folder), sun, float(altitude), "high", wavelengths=COLOURS)
     directions = unit_vectors(
         np.radians(rows["view_zenith_deg"]), EAST + np.radians(rows["relative_azimuth_deg"])
     )
-    return Errors(clouds.radiance(directions)[:, 0], rows[RADIANCE], rows["stderr"])
+    radiance = clouds.radiance(directions)[:, COLOURS == 550.0]
+    return Errors(radiance[:, 0], rows[RADIANCE], rows["stderr"])
 
 
 @pytest.mark.parametrize(("sun", "mean", "rms"), [(60.0, 0.02, 0.03), (10.0, 0.05, 0.08)])

@@ -15,7 +15,9 @@ UP = np.array([[0.0, 0.0, 1.0]])
 
 def visible(sun, altitudes):
     """Share of a sun in the south, at altitudes above the observer."""
-    settings = map_settings(sun_elevation=math.radians(sun), clouds_quality="draft")
+    settings = map_settings(
+        sun_elevation=math.radians(sun), method="hillaire", clouds_quality="draft"
+    )
     clouds = Scene(DECK, settings).cloudscape
     return clouds.visible(UP, np.array([altitudes]))[0]
 
@@ -23,7 +25,9 @@ def visible(sun, altitudes):
 @pytest.fixture(scope="module")
 def places():
     """Ends of a stretch below the deck, and of one above it. [km]"""
-    (layer,) = Scene(DECK, map_settings(clouds_quality="draft")).cloudscape.layers
+    (layer,) = Scene(
+        DECK, map_settings(method="hillaire", clouds_quality="draft")
+    ).cloudscape.layers
     return [0.02, 0.5 * layer.grid.base, layer.grid.top + 0.5, layer.grid.top + 1.0]
 
 

@@ -9,6 +9,7 @@ import pytest
 
 from skybake.colour.space import COLOUR_SPACES, find_colour_space, rgb_from_xyz
 from skybake.errors import InputError, OutputError
+from skybake.formats import preview
 from skybake.formats.preview import DEFAULT_VIEW, VIEWS, display_values, write_preview
 from tests.formats.maps import listing, sky
 
@@ -93,6 +94,16 @@ def test_the_same_map_gives_the_same_bytes_whatever_the_threads(tmp_path):
         OpenImageIO.attribute("threads", before)
 
     assert len(digests) == 1
+
+
+def test_the_same_map_gives_the_same_bytes_whatever_the_rows_at_once(tmp_path, monkeypatch):
+    digests = []
+    for most in (100 * 50, 100 * 16, 100 * 7):
+        monkeypatch.setattr(preview, "PIXELS_AT_ONCE", most)
+        write_preview(tmp_path / "a.png", sky(100, 50), REC709, gain=1.0)
+        digests.append(hashlib.sha256((tmp_path / "a.png").read_bytes()).hexdigest())
+
+    assert len(set(digests)) == 1
 
 
 def test_the_picture_is_tagged_srgb_and_has_no_date(tmp_path):

@@ -11,9 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from numba.core import types
 
 from skybake.jit.arguments import flatten
-from skybake.jit.kernel import kernel
+from skybake.jit.kernel import inlined_kernel, kernel
 
 
 class Pair(NamedTuple):
@@ -208,3 +209,19 @@ def test_a_render_that_finds_its_kernels_imports_no_compiler(tmp_path):
         )
     assert result.stdout.split() == ["none", "True"]
     assert Path(tmp_path / "sky.exr").stat().st_size > 0
+
+
+@pytest.mark.parametrize(("kind", "is_inlined"), [(kernel, False), (inlined_kernel, True)])
+def test_kernels_that_call_an_inlined_one_contain_it(kind, is_inlined):
+    @kind
+    def inner(x):
+        return 0.5 * x
+
+    @kernel
+    def twice(x):
+        return inner(inner(x))
+
+    inner._dispatcher.compile((types.float64,))
+    (compiled,) = inner._dispatcher.overloads.values()
+    assert ("alwaysinline" in compiled.library.get_llvm_str()) is is_inlined
+    assert twice(8.0) == 2.0

@@ -85,3 +85,10 @@ def test_a_forked_process_works_though_its_parent_had_threads():
         workers.run_rows(8, lambda *_: None)
         os._exit(7)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 7
+
+
+def test_the_share_that_is_done_is_told_to_who_listens():
+    told = []
+    Workers(1).tell(0.2)
+    Workers(1).with_cancel(threading.Event(), told.append).tell(0.4)
+    assert told == [0.4]

@@ -84,7 +84,7 @@ def test_zodiacal_light_is_dimmer_from_mars():
     frame = CelestialFrame("mars", 1.0, 0.0)
 
     def zodiacal(preset):
-        sky = Sky(preset, math.radians(-60.0))
+        sky = Sky(preset, math.radians(-60.0), method="hillaire")
         night, without = (
             NightDome(sky, frame, airglow=0.0, zodiacal=each).xyz[0, 0, 1] for each in (1.0, 0.0)
         )

@@ -28,6 +28,7 @@ SCENES = [
     ("EARTH_HAZE", 0.001, 35.0),
     ("MARS_A", 0.001, 60.0),
 ]
+QUICK_SCENES = SCENES[:2] + SCENES[3:4] + SCENES[5:]
 MORE_SCENES = [
     ("EARTH_A", 0.001, 5.0),
     ("EARTH_A", 0.001, 0.0),
@@ -99,7 +100,13 @@ def check_all_orders(name, altitude, sun, samples, count, worst_stderr):
     assert np.all((error <= allowed)[judged]), (error / noise)[judged].max()
 
 
-@pytest.mark.parametrize(("name", "altitude", "sun"), SCENES)
+@pytest.mark.parametrize(
+    ("name", "altitude", "sun"),
+    [
+        pytest.param(*scene, marks=() if scene in QUICK_SCENES else pytest.mark.slow)
+        for scene in SCENES
+    ],
+)
 def test_all_orders_agree_with_the_tables(name, altitude, sun):
     worst = 0.006 if name == "EARTH_A" and sun >= 0.0 else 0.02
     check_all_orders(name, altitude, sun, samples=4800, count=5, worst_stderr=worst)
@@ -164,9 +171,9 @@ def test_results_do_not_depend_on_the_number_of_threads(monkeypatch):
     ("name", "sun", "samples"),
     [
         ("EARTH_A", 60.0, 6400),
-        ("EARTH_A", 10.0, 6400),
+        pytest.param("EARTH_A", 10.0, 6400, marks=pytest.mark.slow),
         ("EARTH_A", -4.0, 6400),
-        ("MARS_A", 60.0, 6400),
+        pytest.param("MARS_A", 60.0, 6400, marks=pytest.mark.slow),
         ("MARS_A", 10.0, 6400),
         # Dusk in dust: most light has turned many times, and few paths find it.
         pytest.param("MARS_A", -4.0, 100_000, marks=pytest.mark.slow),

@@ -20,6 +20,7 @@ from skybake.scattering.atmosphere import (
     is_stored,
 )
 from tests.media import plain_medium
+from tests.skies import truth_atmosphere
 
 MEDIUM = plain_medium(lambda h: np.exp(-h / 8.0), [0.01, 0.05])
 
@@ -56,6 +57,13 @@ def test_stored_tables_are_the_built_ones_bit_by_bit(folder):
     assert is_stored(MEDIUM, "hillaire")
     assert_same(load(MEDIUM), built)
     assert len(list(folder.iterdir())) == 1
+
+
+def test_stored_tables_of_all_orders_are_not_built_again_where_air_has_no_matrices(monkeypatch):
+    assert len(truth_atmosphere("EARTH_A").medium.matrix) == 0
+    forget_atmospheres()
+    monkeypatch.setattr(atmosphere, "build_atmosphere", None)
+    truth_atmosphere("EARTH_A")
 
 
 def test_stored_tables_are_not_built_again(folder, monkeypatch):
@@ -173,27 +181,40 @@ DAMAGES = [
 ]
 
 
+@pytest.fixture(scope="module")
+def built_once():
+    return build_atmosphere(MEDIUM, "hillaire")
+
+
+@pytest.fixture
+def built(built_once, folder, monkeypatch):
+    """What building the atmosphere returns, which is on disk."""
+    monkeypatch.setattr(atmosphere, "build_atmosphere", lambda *_: built_once)
+    load(MEDIUM)
+    return built_once
+
+
 @pytest.mark.parametrize("damage", DAMAGES)
-def test_a_file_that_is_not_what_was_written_is_made_anew(folder, damage):
-    built = load(MEDIUM)
+def test_a_file_that_is_not_what_was_written_is_made_anew(folder, built, damage):
     (path,) = folder.iterdir()
     whole = path.read_bytes()
     path.write_bytes(damage(whole))
-    assert_same(load(MEDIUM), built)
+    assert load(MEDIUM) is built
     assert path.read_bytes() == whole
 
 
 @pytest.mark.parametrize("damage", DAMAGES)
-def test_tables_from_another_machine_that_do_not_fit_are_made_anew(folder, damage, monkeypatch):
-    built = load(MEDIUM)
+def test_tables_from_another_machine_that_do_not_fit_are_made_anew(folder, built, damage):
     (path,) = folder.iterdir()
     whole = path.read_bytes()
     path.unlink()
-    for content, builds in ((whole, 0), (damage(whole), 1)):
+    for content, is_anew in ((whole, False), (damage(whole), True)):
         forget_atmospheres()
         atmosphere.adopt_atmosphere(MEDIUM, "hillaire", content)
-        assert_same(atmosphere.load_atmosphere(MEDIUM, "hillaire"), built)
-        assert len(list(folder.iterdir())) == builds
+        found = atmosphere.load_atmosphere(MEDIUM, "hillaire")
+        assert_same(found, built)
+        assert (found is built) == is_anew
+        assert len(list(folder.iterdir())) == is_anew
 
 
 def test_a_file_in_place_of_the_folder_only_costs_the_reuse(folder):

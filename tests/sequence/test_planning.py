@@ -6,12 +6,14 @@ from pathlib import Path
 
 import pytest
 
+from skybake.angles import direction_from_angles
 from skybake.ephemeris.moment import TimeSpan, sun_at
 from skybake.ephemeris.place import SITES
 from skybake.errors import ArgumentError, InputError
 from skybake.image.settings import map_settings
 from skybake.optics.changes import PresetChanges
 from skybake.sequence.exposure_curve import ExposureCurve
+from skybake.sequence.moon_path import MoonPath
 from skybake.sequence.planning import plan_sequence
 from skybake.sequence.ramp import Ramp
 from tests.ephemeris.places import PARIS
@@ -124,3 +126,24 @@ def test_a_plan_of_an_evening_knows_its_local_times():
     )
     labels = [frame.label for frame in plan_sequence(times=span).frames]
     assert [label[11:16] for label in labels] == ["21:57", "22:12", "22:27"]
+
+
+def test_a_moon_by_hand_moves_evenly_and_has_the_phase_that_each_sun_makes():
+    path = MoonPath(elevation=Ramp(0.1, 0.5), azimuth=math.radians(90.0))
+    plan = plan_sequence(frames="1-3", sun_elevation=Ramp(0.0, -1.0), moon_path=path)
+    lights = [frame.settings.moonlight.moon for frame in plan.frames]
+    assert [each.elevation for each in lights] == pytest.approx([0.1, 0.3, 0.5])
+    assert [each.azimuth for each in lights] == pytest.approx([math.radians(90.0)] * 3)
+    for frame, each in zip(plan.frames, lights, strict=True):
+        sun = frame.settings.lighting
+        assert each.sun == pytest.approx(
+            direction_from_angles(sun.sun_azimuth, sun.sun_elevation), abs=1e-9
+        )
+
+
+def test_the_phase_of_a_moon_by_hand_may_change():
+    path = MoonPath(elevation=0.5, phase=Ramp(0.0, 1.0))
+    plan = plan_sequence(frames="1-2", sun_elevation=-0.5, moon_path=path)
+    assert [frame.settings.moonlight.moon.phase_angle for frame in plan.frames] == pytest.approx(
+        [0.0, 1.0], abs=1e-6
+    )

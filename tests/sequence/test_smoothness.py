@@ -66,8 +66,13 @@ def test_no_direction_has_a_step(preset, middle):
     assert found.max() < VISIBLE
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("preset", ["earth", "mars"])
+@pytest.mark.parametrize(
+    "preset",
+    [
+        pytest.param("earth", marks=pytest.mark.slow),
+        pytest.param("mars", marks=pytest.mark.nightly),
+    ],
+)
 def test_maps_follow_their_rays_through_a_whole_sunset(preset):
     """Second differences from frame to frame are those of the light itself."""
     elevations = np.arange(4.0, -10.01, -0.25)

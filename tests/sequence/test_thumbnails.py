@@ -94,7 +94,7 @@ def peak(folder, kind, count):
     ("kind", "frames", "each"),
     [
         pytest.param("sheet", 400, 0.03, marks=pytest.mark.slow),
-        pytest.param("sheet", 2000, 0.03, marks=pytest.mark.slow),
+        pytest.param("sheet", 2000, 0.03, marks=pytest.mark.nightly),
         ("webp", 200, 0.05),
         ("gif", 60, 0.3),
     ],

@@ -56,7 +56,8 @@ def test_a_source_is_the_sum_of_its_suns(responses, name):
 def test_in_a_white_furnace_everything_is_white():
     # Air that absorbs nothing over a white ground.
     white = {"constituents.ozone": "none", "constituents.aerosol": "none", "ground.albedo": 1.0}
-    sky = Sky(load_preset("earth-clear", white), 0.5, altitude=2.0)
+    world, few = load_preset("earth-clear", white), [450.0, 550.0, 650.0]
+    sky = Sky(world, 0.5, altitude=2.0, wavelengths=few)
     everywhere = np.radians([0.0, 45.0, 80.0, 89.0, 92.0, 120.0, 180.0])
     np.testing.assert_allclose(seen(sky, np.ones_like, everywhere), 1.0, atol=0.012)
 

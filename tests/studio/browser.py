@@ -9,22 +9,33 @@ import numpy as np
 import pytest
 
 SETTLED = "#frame[data-state=settled]"
-LONGEST = 240_000  # ms, since the first picture may compile kernels
+LONGEST = 600_000  # ms, since the first picture may compile kernels
 
 needs_browser = pytest.mark.skipif(
     shutil.which("chromium") is None or find_spec("playwright") is None,
     reason="needs the program chromium and the package playwright",
 )
 
-_TEXELS = """() => {
-  const { texels, width, height } = studio.live.frames.now;
-  const bytes = new Uint8Array(texels.slice().buffer);
+_AS_TEXT = """(bytes) => {
   let text = "";
   for (let at = 0; at < bytes.length; at += 8192) {
     text += String.fromCharCode(...bytes.subarray(at, at + 8192));
   }
-  return [btoa(text), width, height];
+  return btoa(text);
 }"""
+
+_TEXELS = f"""() => {{
+  const {{ texels, width, height }} = studio.live.frames.now;
+  return [({_AS_TEXT})(new Uint8Array(texels.slice().buffer)), width, height];
+}}"""
+
+_DRAWN = f"""() => {{
+  studio.views.draw();
+  const {{ gl, canvas: {{ width, height }} }} = studio.views.renderer;
+  const bytes = new Uint8Array(4 * width * height);
+  gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+  return [({_AS_TEXT})(bytes), width, height];
+}}"""
 
 
 @contextmanager
@@ -44,11 +55,15 @@ def chromium():
 
 
 class Tab:
-    """A tab with the page; `complaints` are what its console and its scripts complained of."""
+    """A tab with the page; `complaints` are what its console and its scripts complained of.
 
-    def __init__(self, browser, url, *, fragment="", size=(1000, 700)):
+    `keywords` are those of the browser's `new_context`.
+    """
+
+    def __init__(self, browser, url, *, fragment="", size=(1000, 700), **keywords):
         width, height = size
-        self.context = browser.new_context(viewport={"width": width, "height": height})
+        viewport = {"width": width, "height": height}
+        self.context = browser.new_context(viewport=viewport, **keywords)
         self.context.grant_permissions(["clipboard-read", "clipboard-write"])
         self.page = self.context.new_page()
         self.page.set_default_timeout(LONGEST)
@@ -62,7 +77,7 @@ class Tab:
             self.complaints.append(message.text)
 
     def settle(self):
-        """Wait until the picture is that of the knobs."""
+        """Wait until the full picture of what the knobs are set to has been drawn."""
         self.page.wait_for_selector(SETTLED)
 
     def turn(self, knob, text):
@@ -94,6 +109,11 @@ class Tab:
         """
         text, width, height = self.page.evaluate(_TEXELS)
         return np.frombuffer(base64.b64decode(text), "<f2").reshape(height, width, 3)
+
+    def drawn(self):
+        """Draw and return what the page shows of the sky, bytes of shape (row, column, channel)."""
+        text, width, height = self.page.evaluate(_DRAWN)
+        return np.frombuffer(base64.b64decode(text), np.uint8).reshape(height, width, 4)[::-1]
 
     def scale(self):
         return self.page.evaluate("studio.live.frames.now.scale")

@@ -8,6 +8,9 @@ import aiohttp
 
 from tests.studio.servers import read_frame
 
+LONGEST = 600.0
+"""Seconds, since the first picture may compile kernels."""
+
 SMALL = {"kind": "equirect", "size": [64, 32]}
 LARGE = {"kind": "equirect", "size": [512, 256]}
 
@@ -28,7 +31,7 @@ class Page:
 
     async def next(self):
         """Return the next message: JSON, or header and pixels of a picture."""
-        message = await asyncio.wait_for(self.socket.receive(), 240)
+        message = await asyncio.wait_for(self.socket.receive(), LONGEST)
         if message.type is aiohttp.WSMsgType.TEXT:
             return json.loads(message.data), None
         assert message.type is aiohttp.WSMsgType.BINARY, message

@@ -3,7 +3,6 @@
 import asyncio
 import math
 import shlex
-import time
 from contextlib import suppress
 from pathlib import Path
 
@@ -13,13 +12,22 @@ import pytest
 
 import skybake
 from tests.cli.runs import invoke
-from tests.studio.pages import LARGE, page_of, talk, view_of
-from tests.studio.servers import serving
+from tests.studio.pages import LARGE, LONGEST, page_of, talk, view_of
+from tests.studio.servers import HOLDING, RELEASED, STOPPED, serving, wait_until
 
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory):
     with serving(tmp_path_factory.mktemp("live")) as running:
+        yield running
+
+
+@pytest.fixture(scope="module")
+def holding(tmp_path_factory):
+    """A server whose solutions last as long as a test needs them to, see `HOLDING`."""
+    folder = tmp_path_factory.mktemp("holding")
+    with serving(folder, code=HOLDING) as running:
+        running.released, running.stopped = folder / RELEASED, folder / STOPPED
         yield running
 
 
@@ -168,7 +176,7 @@ def test_a_message_of_ten_megabytes_closes_its_socket_alone(server):
     async def conversation(page, other):
         with suppress(ConnectionError):  # hung up before all of it had come
             await page.socket.send_str("x" * 10_000_000)
-        message = await asyncio.wait_for(page.socket.receive(), 60)
+        message = await asyncio.wait_for(page.socket.receive(), LONGEST)
         return message.type, (await other.end(await other.ask()))[-1][0]
 
     kind, after = talk(server, conversation, pages=2)
@@ -176,20 +184,27 @@ def test_a_message_of_ten_megabytes_closes_its_socket_alone(server):
     assert after.get("final"), after
 
 
-def test_a_newer_request_takes_the_place_of_an_older_one(server):
-    async def conversation(page):
-        numbers = [await page.ask({"sun": f"{10 + n}deg"}, view=LARGE) for n in range(12)]
-        finished = {}
-        while numbers[-1] not in finished:
-            answer, _ = await page.next()
-            if answer.get("final") or "cancelled" in answer:
-                finished[answer["id"]] = bool(answer.get("final"))
-        return [finished.get(number) for number in numbers]
+def test_a_newer_request_takes_the_place_of_those_that_wait(holding):
+    air = {"visibility": "25km", "method": "hillaire"}
 
-    ends = talk(server, conversation)
-    assert ends[-1] is True
-    assert None not in ends  # each has an answer
-    assert ends.count(False) >= 9
+    async def conversation(page):
+        await page.ask(air)
+        assert (await page.next())[0]["stage"] == "solving atmosphere"
+        assert (await page.next())[0]["progress"] == 0.25
+        waiting = [await page.ask(air | {"sun": f"{20 + n}deg"}) for n in range(10)]
+        newest = await page.ask(air | {"sun": "40deg"})
+        overtaken = [(await page.next())[0] for _ in waiting]
+        holding.released.touch()
+        return overtaken == [{"id": one, "cancelled": True} for one in waiting], (
+            await page.end(newest)
+        )[-1][0]
+
+    try:
+        are_overtaken, end = talk(holding, conversation)
+    finally:
+        holding.released.unlink(missing_ok=True)
+    assert are_overtaken
+    assert end["figures"]["sun_elevation_deg"] == pytest.approx(40.0)
 
 
 def test_requests_of_other_tags_are_not_disturbed(server):
@@ -215,35 +230,35 @@ def test_two_pages_are_independent(server):
     assert talk(server, conversation, pages=2) == pytest.approx([33.0, 34.0])
 
 
-def test_a_solution_says_so_and_gives_way_to_another_air(server):
+def test_a_solution_says_so_and_gives_way_to_another_air(holding):
     """The server answers other requests meanwhile."""
-    depth = str(0.2 + 1e-4 * (time.time() % 1000.0))  # never solved before
 
     async def conversation(page):
-        slow = await page.ask({"preset": "mars"}, {"dust.optical_depth": depth})
+        slow = await page.ask({"preset": "titan"})
+        begun, _ = await page.next()
         answer, _ = await page.next()
-        async with page_of(server) as other:
+        async with page_of(holding) as other:
             await other.end(await other.ask({"sun": "95deg"}))
         quick = await page.ask({"sun": "22deg"})
         cancelled = (await page.end(slow))[-1][0]
-        return answer, cancelled, (await page.end(quick))[-1][0]
+        return begun, answer, cancelled, (await page.end(quick))[-1][0]
 
-    answer, cancelled, after = talk(server, conversation)
-    assert answer["stage"] == "solving atmosphere"
+    begun, answer, cancelled, after = talk(holding, conversation)
+    assert (begun["stage"], begun["progress"]) == ("solving atmosphere", None)
+    assert (answer["stage"], answer["progress"]) == ("solving atmosphere", 0.25)
     assert cancelled.get("cancelled"), "it was not at work any more"
     assert after.get("final"), after
 
 
-def test_a_page_that_goes_away_stops_its_work(server):
-    depth = str(0.3 + 1e-4 * (time.time() % 1000.0))
+def test_a_page_that_goes_away_stops_its_work(holding):
+    holding.stopped.unlink(missing_ok=True)
 
     async def conversation(page):
-        await page.ask({"preset": "mars"}, {"dust.optical_depth": depth})
-        await page.next()
+        await page.ask({"preset": "titan"})
+        assert (await page.next())[0]["stage"] == "solving atmosphere"
 
-    talk(server, conversation)
-    header, _ = view_of(server, {"sun": "23deg"})
-    assert header["final"]
+    talk(holding, conversation)
+    wait_until(holding.stopped.exists)
 
 
 def test_a_socket_without_the_token_is_refused(server):
@@ -276,16 +291,14 @@ def test_a_page_that_goes_away_after_its_picture_leaves_it_to_others(server):
         assert header.get("final"), header
 
 
-def test_a_picture_is_stopped_when_asked(server):
-    depth = str(0.4 + 1e-4 * (time.time() % 1000.0))
-
+def test_a_picture_is_stopped_when_asked(holding):
     async def conversation(page):
-        slow = await page.ask({"preset": "mars"}, {"dust.optical_depth": depth})
+        slow = await page.ask({"preset": "titan"})
         answer, _ = await page.next()
         await page.socket.send_json({"stop": "A"})
         return answer, (await page.end(slow))[-1][0]
 
-    answer, end = talk(server, conversation)
+    answer, end = talk(holding, conversation)
     assert answer["stage"] == "solving atmosphere"
     assert end["cancelled"]
 

@@ -4,44 +4,48 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from skybake.commands.options import celestial, values
-from skybake.commands.options.rules import Needs, options_together
+from skybake.commands.options.observer import quantity
+from skybake.commands.options.rules import Decorator, Needs, options_together
 from skybake.errors import InputError
 
 if TYPE_CHECKING:
     from skybake.ephemeris.moment import Moment
     from skybake.image.moonlight import Moonlight
+    from skybake.sequence.moon_path import MoonPath
 
 SOUTH = math.pi
 """Bearing of a Moon that has none. [rad]"""
 
-moonlight_options = options_together(
-    click.option(
-        "--moon-elevation",
-        metavar="ANGLE",
-        type=values.elevation,
-        help="Put the Moon as a light at this elevation, where no time does.",
-    ),
-    click.option(
-        "--moon-azimuth",
-        metavar="ANGLE",
-        type=values.bearing,
-        show_default="180deg",
-        help="Compass bearing of the Moon that --moon-elevation puts there.",
-    ),
-    click.option(
-        "--moon-phase",
-        metavar="ANGLE|full|gibbous|quarter|crescent|new",
-        type=celestial.moon_phase,
-        show_default="what the sun makes of it",
-        help="Phase angle of that Moon, 0deg when full and 180deg when new; its lit side looks to "
-        "the sun.",
-    ),
-)
+
+def moonlight_options(*, is_range: bool = False) -> Decorator:
+    """Return the options of a Moon by hand; of sequences angles may be ranges."""
+    return options_together(
+        click.option(
+            "--moon-elevation",
+            **quantity("ANGLE", values.elevation, is_range=is_range),
+            help="Put the Moon as a light at this elevation, where no time does.",
+        ),
+        click.option(
+            "--moon-azimuth",
+            **quantity("ANGLE", values.bearing, is_range=is_range),
+            show_default="180deg",
+            help="Compass bearing of the Moon that --moon-elevation puts there.",
+        ),
+        click.option(
+            "--moon-phase",
+            metavar="ANGLE[..ANGLE]|NAME" if is_range else "ANGLE|NAME",
+            type=values.ramp(celestial.moon_phase) if is_range else celestial.moon_phase,
+            show_default="what the sun makes of it",
+            help="Phase angle of that Moon, 0deg when full and 180deg when new, or full, gibbous, "
+            "quarter, crescent or new; its lit side looks to the sun.",
+        ),
+    )
 
 
 def shown_moon(options: Mapping[str, Any]) -> str | None:
@@ -96,6 +100,17 @@ def moonlight_of_sequence(options: Mapping[str, Any]) -> Moonlight:
     if options["night"] == "off":
         return Moonlight(shown="exclude")
     return Moonlight(shown=shown_moon(options) or "include")
+
+
+def moon_path_from_options(options: Mapping[str, Any]) -> MoonPath | None:
+    """Return where a Moon by hand stands in a sequence, if there is one."""
+    from skybake.sequence.moon_path import MoonPath
+
+    if options["moon_elevation"] is None:
+        return None
+    path = MoonPath(options["moon_elevation"], phase=options["moon_phase"])
+    azimuth = options["moon_azimuth"]
+    return path if azimuth is None else replace(path, azimuth=azimuth)
 
 
 def moonlight_from_options(

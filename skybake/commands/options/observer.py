@@ -22,7 +22,7 @@ def sun_option(*, is_range: bool = False) -> Decorator:
     return click.option(
         "--sun",
         "sun_elevation",
-        **_quantity("ANGLE", values.elevation, is_range=is_range),
+        **quantity("ANGLE", values.elevation, is_range=is_range),
         default="30deg",
         show_default=True,
         help=text + ("from first to last frame." if is_range else "-90deg to 90deg."),
@@ -33,7 +33,7 @@ def sun_azimuth_option(*, is_range: bool = False) -> Decorator:
     """Return ``--sun-azimuth``, a bearing or a range of them."""
     return click.option(
         "--sun-azimuth",
-        **_quantity("ANGLE", values.bearing, is_range=is_range),
+        **quantity("ANGLE", values.bearing, is_range=is_range),
         default="180deg",
         show_default=True,
         help="Compass bearing of the sun: 0deg is north, 90deg east.",
@@ -129,7 +129,7 @@ def altitude_option(*, is_range: bool = False) -> Decorator:
     """Return ``--altitude``, a length or a range of them."""
     return click.option(
         "--altitude",
-        **_quantity("LENGTH", values.altitude, is_range=is_range),
+        **quantity("LENGTH", values.altitude, is_range=is_range),
         default="0m",
         show_default=True,
         help="Of the observer above the ground.",
@@ -155,7 +155,8 @@ def positions(options: Mapping[str, Any], moment: Moment | None) -> dict[str, An
     }
 
 
-def _quantity(metavar: str, read: Callable[[str], float], *, is_range: bool) -> dict[str, Any]:
+def quantity(metavar: str, read: Callable[[str], float], *, is_range: bool) -> dict[str, Any]:
+    """Return how an option reads a value, or in sequences one that may change."""
     if is_range:
         return {"metavar": f"{metavar}[..{metavar}]", "type": values.ramp(read)}
     return {"metavar": metavar, "type": read}

@@ -6,7 +6,7 @@ const FIRST_WAIT = 400;
 const LONGEST_WAIT = 4000;
 
 /**
- * Events: `frame`, `progress`, `fault`, `cancelled`, `bake` with what the server said in `detail`;
+ * Events: `frame`, `progress`, `fault`, `bake` with what the server said in `detail`;
  * `connection` with "open", "lost" or "refused".
  */
 export class Client extends EventTarget {
@@ -103,7 +103,6 @@ export class Client extends EventTarget {
     const message = JSON.parse(data);
     if ("bake" in message) this.#tell("bake", message);
     else if (message.error) this.#ifLatest("fault", message);
-    else if (message.cancelled) this.#tell("cancelled", message);
     else if (message.stage) this.#ifLatest("progress", message);
   }
 

@@ -47,8 +47,10 @@ export class Exposure {
   }
 
   show() {
+    const text = `EV ${this.ev.toFixed(1)}`;
     this.slider.value = this.ev;
-    byId("exposure-text").textContent = `EV ${this.ev.toFixed(1)}`;
+    this.slider.setAttribute("aria-valuetext", text);
+    byId("exposure-text").textContent = text;
     byId("exposure-auto").setAttribute("aria-pressed", String(this.isAuto));
   }
 

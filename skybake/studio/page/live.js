@@ -9,7 +9,12 @@ const UNNOTICED = 250; // ms within which a picture needs no word
 const PLANET_MOST = 1024;
 const DETAILS = [512, 1024, 2048, 4096];
 
-/** Events: `frame` with a picture in `detail`, `command` with its command line. */
+/**
+ * Events: `frame` with a picture in `detail`, `command` with its command line.
+ *
+ * `data-state` of the frame is "busy", "fault", "cancelled", or "settled" once the full picture of
+ * what is set has been drawn.
+ */
 export class Live extends EventTarget {
   frames = {};
   expected = {};
@@ -21,10 +26,10 @@ export class Live extends EventTarget {
     client.addEventListener("frame", ({ detail }) => this.#arrived(detail));
     client.addEventListener("progress", ({ detail }) => this.#progress(detail));
     client.addEventListener("fault", ({ detail }) => this.#failed(detail));
-    client.addEventListener("cancelled", () => this.#settled());
     client.addEventListener("connection", ({ detail }) => this.#connection(detail));
     store.addEventListener("change", () => this.ask());
     views.addEventListener("view", () => this.#viewed());
+    views.addEventListener("drawn", () => this.#drawn());
     byId("cancel").addEventListener("click", () => this.cancel());
     const select = byId("detail");
     for (const width of DETAILS) select.add(new Option(`${width} × ${width / 2}`, width));
@@ -47,9 +52,8 @@ export class Live extends EventTarget {
   cancel() {
     for (const tag of Object.keys(this.expected)) this.client.stop(tag);
     this.expected = {};
-    this.#settled();
+    this.#end("cancelled");
     say("Cancelled; the last picture stays");
-    byId("frame").dataset.state = "cancelled";
   }
 
   get isBusy() {
@@ -71,6 +75,7 @@ export class Live extends EventTarget {
 
   #begin() {
     byId("frame").dataset.state = "busy";
+    this.isFull = false;
     clearTimeout(this.timer);
     this.timer = setTimeout(() => {
       if (this.isBusy) byId("progress").hidden = false;
@@ -89,7 +94,7 @@ export class Live extends EventTarget {
     }
     if (!frame.final) return;
     delete this.expected[frame.tag];
-    if (!this.isBusy) this.#settled();
+    this.isFull = !this.isBusy;
   }
 
   #keep(name, frame) {
@@ -114,16 +119,19 @@ export class Live extends EventTarget {
 
   #failed({ tag, error, option }) {
     delete this.expected[tag];
-    this.#settled();
-    byId("frame").dataset.state = "fault";
+    if (!this.isBusy) this.#end("fault");
     this.dispatchEvent(new CustomEvent("fault", { detail: { error, option } }));
   }
 
-  #settled() {
-    if (this.isBusy) return;
+  #drawn() {
+    if (this.isFull) this.#end("settled");
+  }
+
+  #end(state) {
     clearTimeout(this.timer);
+    this.isFull = false;
     byId("progress").hidden = true;
-    byId("frame").dataset.state = "settled";
+    byId("frame").dataset.state = state;
   }
 
   #connection(state) {

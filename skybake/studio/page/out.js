@@ -49,7 +49,7 @@ export class Out {
 function section(title, text, file) {
   const buttons = [make("button", { type: "button", onclick: () => copy(text, title) }, "Copy")];
   if (file) buttons.push(make("button", { type: "button", onclick: () => download(text, file) }, `Save ${file}`));
-  return make("section", {}, make("header", {}, make("h3", {}, title), ...buttons), make("pre", { tabindex: 0, "aria-label": title }, text));
+  return make("section", {}, make("header", {}, make("h3", {}, title), ...buttons), make("pre", { tabindex: 0, role: "group", "aria-label": title }, text));
 }
 
 async function copy(text, what) {

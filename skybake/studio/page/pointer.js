@@ -16,6 +16,7 @@ export function startPointer(views, store, probe) {
   canvas.addEventListener("pointerdown", (event) => {
     canvas.setPointerCapture(event.pointerId);
     fingers.set(event.pointerId, event);
+    spread = spreadOf(fingers);
     canvas.classList.add(event.shiftKey ? "picking" : "turning");
     if (event.shiftKey) putSun(views, store, event);
   });
@@ -26,7 +27,7 @@ export function startPointer(views, store, probe) {
       return;
     }
     fingers.set(event.pointerId, event);
-    if (fingers.size === 2) spread = pinch(views, [...fingers.values()], spread);
+    if (fingers.size === 2) spread = pinch(views, spread, spreadOf(fingers));
     else if (event.shiftKey) putSun(views, store, event);
     else drag(views, event.clientX - last.clientX, event.clientY - last.clientY);
     probe(views.directionUnder(event.clientX, event.clientY));
@@ -34,7 +35,7 @@ export function startPointer(views, store, probe) {
   for (const end of ["pointerup", "pointercancel"]) {
     canvas.addEventListener(end, (event) => {
       fingers.delete(event.pointerId);
-      spread = null;
+      spread = spreadOf(fingers);
       canvas.classList.remove("turning", "picking");
     });
   }
@@ -52,10 +53,16 @@ function drag(views, right, down) {
   else if (views.kind === "set") views.turn((-right * ALL_AROUND) / views.canvas.clientWidth, 0);
 }
 
-function pinch(views, [one, other], before) {
-  const now = Math.hypot(one.clientX - other.clientX, one.clientY - other.clientY);
+function pinch(views, before, now) {
   if (before && now) views.zoom(before / now);
   return now;
+}
+
+/** How far apart two fingers are, or null if there are not two. */
+function spreadOf(fingers) {
+  if (fingers.size !== 2) return null;
+  const [one, other] = fingers.values();
+  return Math.hypot(one.clientX - other.clientX, one.clientY - other.clientY);
 }
 
 function putSun(views, store, event) {

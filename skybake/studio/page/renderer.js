@@ -85,11 +85,11 @@ export class Renderer {
 
   /**
    * Draw a sky into a rectangle [x, y, width, height] of the canvas, from its upper left; of it,
-   * what is within `clip`.
+   * what is within `clip`. Returns whether it was there to be drawn.
    */
   draw(name, { kind, camera, gain, balance, isFalse, rectangle, clip = rectangle }) {
     const sky = this.#skies.get(name);
-    if (!sky || !this.table) return;
+    if (!sky || !this.table) return false;
     const { gl } = this;
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, sky.texture);
@@ -106,6 +106,7 @@ export class Renderer {
     this.#sun(sky.lighting);
     if (kind === "set") this.#lights(sky.lighting, camera);
     gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+    return true;
   }
 
   /** Fill a rectangle with one colour. */

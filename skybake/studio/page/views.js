@@ -18,7 +18,7 @@ const INSET = [0.34, 250, 1.7];
 /** Where one looks at first: the sun at the left, if it is in the south. */
 export const FIRST_LOOK = { azimuth: 212, elevation: 11, fov: 80 };
 
-/** Event: `view` when another kind is chosen or the camera was moved. */
+/** Events: `view` when another kind is chosen or the camera was moved, `drawn` after each picture. */
 export class Views extends EventTarget {
   camera = { ...FIRST_LOOK };
   kind = "look";
@@ -112,7 +112,7 @@ export class Views extends EventTarget {
     this.#pending = true;
     requestAnimationFrame(() => {
       this.#pending = false;
-      this.#draw();
+      this.draw();
     });
   }
 
@@ -121,25 +121,27 @@ export class Views extends EventTarget {
     return aspect ? fitted(aspect, width, height) : [0, 0, width, height];
   }
 
-  #draw() {
+  /** Draw now what is there. */
+  draw() {
     const { renderer, canvas } = this;
     renderer.fit();
     renderer.clear();
     const { width, height } = canvas;
     const rectangle = this.#rectangle(width, height);
     const split = this.wipe === null ? 0 : width * this.wipe;
-    this.#part("now", rectangle, [split, 0, width - split, height]);
+    const isDrawn = this.#part("now", rectangle, [split, 0, width - split, height]);
     if (split > 0) this.#part("a", rectangle, [0, 0, split, height]);
     if (this.hasBalls && this.kind !== "set") this.#inset(width, height);
+    if (isDrawn) this.dispatchEvent(new Event("drawn"));
   }
 
   #part(slot, rectangle, clip) {
     const isPlanet = this.kind === "planet";
     const name = isPlanet ? `planet-${slot}` : slot;
     const look = this.looks?.(slot, isPlanet);
-    if (!look || !this.renderer.hasSky(name)) return;
+    if (!look) return false;
     const { kind, camera, isFalse } = this;
-    this.renderer.draw(name, { ...look, kind, camera, isFalse, rectangle, clip });
+    return this.renderer.draw(name, { ...look, kind, camera, isFalse, rectangle, clip });
   }
 
   #inset(width, height) {
@@ -160,6 +162,6 @@ function legendOf(colour, stops) {
   const text = stops === 0 ? "grey" : stops > 0 ? `+${stops}` : String(stops);
   const entry = make("span", {}, text);
   entry.style.background = colour;
-  if (stops < -3) entry.style.color = "#fff";
+  if (stops < -3 || stops === 7) entry.style.color = "#fff";
   return entry;
 }
