@@ -148,6 +148,18 @@ def test_twilight_and_the_aureole_of_dust_keep_their_figure(name, elevation, fig
     assert (np.abs(comparison.error) - 3.0 * comparison.noise).max() < 0.05
 
 
+@pytest.mark.parametrize(
+    ("elevation", "figure", "rows"), [(-6.0, 0.003, 12), (-12.0, 0.005, 8), (-18.0, 0.01, 2)]
+)
+def test_twilight_seen_from_an_airliner_is_that_of_the_path_tracer(elevation, figure, rows):
+    """Rows whose standard errors are below 0.6 %, nearly all of them toward the sun."""
+    comparison = compare_place("aloft_EARTH_A", "full", AIRLINER, elevation)
+    certain = comparison.where(comparison.noise < 0.006)
+    assert len(certain.rows) >= rows
+    assert certain.rms < figure
+    assert (np.abs(certain.error) - 3.5 * certain.noise).max() < figure
+
+
 @pytest.mark.parametrize(("name", "altitude", "elevation"), cases(-6, 90))
 def test_single_rows_lie_within_their_errors_and_a_percent(name, altitude, elevation):
     """Three standard errors, a quarter more in twilight as the tables' note says."""

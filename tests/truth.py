@@ -18,7 +18,7 @@ TRUTH_WAVELENGTHS = np.array([680.0, 550.0, 440.0])
 """Wavelengths of the tables and of every `truth_medium`. [nm]"""
 
 TRUTH_FOLDER = Path(__file__).parent / "data" / "reference"
-_PREFIXES = "twilight_", "aureole_", "horizon_"
+_PREFIXES = "twilight_", "aureole_", "horizon_", "aloft_"
 _SHORT_NAMES = {
     "radiance_per_unit_irradiance_sr-1": "radiance",
     "order1_part_deterministic": "order1",
@@ -28,8 +28,8 @@ _SHORT_NAMES = {
 def load_truth(name: str) -> np.ndarray:
     """Reference radiances of "EARTH_A", "EARTH_HAZE" or "MARS_A", at all their altitudes.
 
-    With the prefix "twilight_" or "aureole_" those of the low-noise tables, with "horizon_" those
-    of the package's own path tracer, which lack `order1`.
+    With the prefix "twilight_" or "aureole_" those of the low-noise tables, with "horizon_"
+    or "aloft_" those of the package's own path tracer, which lack `order1`.
 
     Returns
     -------

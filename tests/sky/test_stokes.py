@@ -131,6 +131,27 @@ def test_neutral_points_are_where_those_of_the_table_are(elevation, view_azimuth
         assert 8.0 < from_sun < 30.0
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("view_azimuth", [0.0, 180.0])
+def test_neutral_points_at_sunset_are_20_degrees_away_and_farther_in_haze(view_azimuth):
+    """Neuberger (1951), Introduction to Physical Meteorology, 196; Sekera (1951), Compendium, 79.
+
+    They write "about 20" and "close to 20" of what observers saw, which here is green light.
+    """
+    rows = np.zeros(100, [("view_zenith_deg", float), ("relative_azimuth_deg", float)])
+    rows["view_zenith_deg"], rows["relative_azimuth_deg"] = (
+        np.linspace(40.0, 89.5, 100),
+        view_azimuth,
+    )
+    green = list(TRUTH_WAVELENGTHS).index(550.0)
+    away = []
+    for name in ("RAY", "RAYMIE"):
+        got = seen(skylight(name, 0.0), rows, 0.0)[..., green]
+        away.append(90.0 - neutral_point(rows["view_zenith_deg"], got[:, 1], got[:, 0]))
+    assert away == pytest.approx([20.0, 20.0], abs=3.0)
+    assert away[1] > away[0] + 1.0
+
+
 def neutral_point(zenith, even, whole):
     """Zenith angle at which Q / I changes sign, nearest to the horizon."""
     ratio = even / whole
