@@ -154,6 +154,24 @@ def test_a_map_is_baked_into_the_folder(tab, server):
     tab.page.wait_for_selector("#bake-dialog", state="hidden")
 
 
+def test_a_knob_that_the_view_does_not_show_says_so(tab):
+    before = tab.texels()
+    note = tab.page.locator("#groups [data-knob=polarizer] .note")
+    assert note.is_hidden()
+    tab.turn("polarizer", "30deg")
+    note.wait_for()
+    assert note.text_content() == "Shown in what is baked, not in this view."
+    np.testing.assert_array_equal(tab.texels(), before)
+
+
+def test_numbers_are_signed_but_for_zero(tab):
+    signed = """async () => {
+      const { signed } = await import("/page/figures.js");
+      return [-0.3, 0.3, 0, -0.7, 0.7].map(value => signed(value, 0));
+    }"""
+    assert tab.page.evaluate(signed) == ["0", "0", "0", "-1", "+1"]
+
+
 def test_every_control_has_a_name(tab):
     nameless = """() => [...document.querySelectorAll("button, input, select, [role=slider]")]
       .filter(element => !(element.getAttribute("aria-label") || element.textContent.trim()

@@ -43,6 +43,8 @@ _SOLVES = frozenset(_GROUPS["World"])
 _CLOUDS = frozenset(_GROUPS["Clouds"])
 _FOLDS = frozenset((*_GROUPS["Sun's disc"], "below_horizon", *_GROUPS["Picture"]))
 _STORED = frozenset((*_GROUPS["Map"], *_GROUPS["File"], *_GROUPS["Sensor"], "vision", "show"))
+_UNSEEN = frozenset((*_GROUPS["Sensor"], "vision", "show"))
+"""Options that change what baked pictures look like, but not what a page shows of the sky."""
 
 
 @dataclass(frozen=True)
@@ -179,6 +181,7 @@ def _described(option: click.Parameter) -> dict[str, Any]:
         "metavar": option.metavar or "",
         "help": getattr(option, "help", None) or "",
         "live": live_of(name),
+        "unseen": name in _UNSEEN,
     }
 
 

@@ -41,7 +41,7 @@ export function showProbe(frame, found, gain) {
   const stops = Math.log2((y * gain) / MIDDLE_GREY);
   const rows = [
     ["Luminance", `${round(level, 3)} cd/m²`],
-    ["Stops", Number.isFinite(stops) ? `${stops > 0 ? "+" : ""}${stops.toFixed(1)}` : "–"],
+    ["Stops", Number.isFinite(stops) ? signed(stops, 1) : "–"],
     ["Spot meter", level > 0 ? `EV ${Math.log2(level * REFLECTED).toFixed(1)}` : "–"],
     ["Temperature", y > 0 ? coloured(light, kelvin ? `${round(kelvin, 3)} K` : "off white") : "–"],
     ["x, y", xy ? xy.map((value) => value.toFixed(3)).join(", ") : "–"],
@@ -55,6 +55,13 @@ export function round(value, digits) {
   if (!Number.isFinite(value)) return "–";
   if (value !== 0 && (Math.abs(value) < 1e-3 || Math.abs(value) >= 1e9)) return value.toExponential(digits - 1);
   return Number(value.toPrecision(digits)).toLocaleString("en", { maximumFractionDigits: 9 }).replaceAll(",", " ");
+}
+
+/** Number with its sign, which zero has none of. */
+export function signed(value, decimals) {
+  const text = value.toFixed(decimals);
+  const number = Number(text);
+  return number === 0 ? text.replace("-", "") : number > 0 ? `+${text}` : text;
 }
 
 function row(title, text) {

@@ -2,6 +2,7 @@
 
 import { byId } from "./dom.js";
 import { luminance } from "./colour.js";
+import { signed } from "./figures.js";
 import { texel } from "./light.js";
 
 const FROM = -12;
@@ -62,11 +63,7 @@ export function drawHistogram(bins, gain) {
 function summary(bins, shift) {
   const parts = [["above", "sky"], ["below", "ground"]].map(([half, title]) => {
     const levels = [...bins[half].keys()].map((bin) => bin / PER_STOP + shift);
-    return levels.length ? `${title} ${signed(Math.min(...levels))} to ${signed(Math.max(...levels))}` : `${title} dark`;
+    return levels.length ? `${title} ${signed(Math.min(...levels), 0)} to ${signed(Math.max(...levels), 0)}` : `${title} dark`;
   });
   return `Stops about middle grey: ${parts.join(", ")}`;
-}
-
-function signed(value) {
-  return `${value > 0 ? "+" : ""}${value.toFixed(0)}`;
 }

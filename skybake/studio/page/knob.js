@@ -19,6 +19,7 @@ export class Knob {
     made += 1;
     Object.assign(this, { spec, value, check, id: `knob-${made}` });
     this.fault = make("p", { class: "fault", id: `${this.id}-fault`, role: "alert", hidden: true });
+    this.note = make("p", { class: "note quiet", id: `${this.id}-note`, hidden: true }, "Shown in what is baked, not in this view.");
     this.help = make("div", { class: "help", id: `${this.id}-help`, hidden: true }, ...helpOf(spec));
     this.field = this.#field();
     this.slider = this.#slider();
@@ -31,6 +32,7 @@ export class Knob {
       this.#helpButton(),
       this.slider?.element,
       this.fault,
+      this.note,
       this.help,
     );
     if (this.#isLong()) this.element.classList.add("long");
@@ -41,6 +43,7 @@ export class Knob {
   show() {
     const given = this.value.get();
     this.element.classList.toggle("changed", given !== undefined);
+    this.note.hidden = given === undefined || !this.spec.unseen;
     if (!this.isPending && !(this.hasFault && document.activeElement === this.field)) this.#fill(given);
     this.slider?.show(this.#number(given));
   }
@@ -67,7 +70,7 @@ export class Knob {
 
   #field() {
     const { kind, choices } = this.spec;
-    const common = { id: this.id, class: "value", "aria-describedby": `${this.id}-help ${this.id}-fault` };
+    const common = { id: this.id, class: "value", "aria-describedby": `${this.id}-help ${this.id}-fault ${this.id}-note` };
     if (kind === "flag") return this.#flag(common);
     if (kind === "choice" && choices) {
       const shown = choices.map((choice) => make("option", { value: choice }, choice));
