@@ -82,6 +82,7 @@ class MarchScratch(NamedTuple):
     truncated: Array
     peak: Array
     local: Array
+    blend: Array
 
 
 def allocate_march(channels: int, order: int) -> MarchScratch:
@@ -97,6 +98,7 @@ def allocate_march(channels: int, order: int) -> MarchScratch:
         truncated=np.empty(channels),
         peak=np.empty((channels, TERMS)),
         local=np.empty((2, 3)),
+        blend=np.empty((4, channels)),
     )
 
 
