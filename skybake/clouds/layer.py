@@ -191,6 +191,7 @@ def solve_layer(
         base=grid.base,
         sun_mu=np.ascontiguousarray(suns[:, 2]),
         irradiance=irradiance,
+        brightness=mean.mean(axis=1),
         order=particles.order,
         fraction=particles.fraction,
         scatter=(2 * degree + 1) / (4.0 * math.pi) * particles.moments[degree],

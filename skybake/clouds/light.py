@@ -14,6 +14,9 @@ from skybake.optics.medium import Array
 FAINTEST = 1e-30
 """Share of the sun's beam that is told from none."""
 
+STEEPEST = 1e4
+"""Ratio of the lights of two suns up to which light between them is their geometric mean."""
+
 
 class LayerLight(NamedTuple):
     """Light in a tile, for one sun or for several heights of it.
@@ -33,6 +36,8 @@ class LayerLight(NamedTuple):
         Cosines of the sun's zenith angle, ascending.
     irradiance : ndarray of float64, shape (sun, z, channel)
         Facing the sun, without clouds, at the altitudes of voxels.
+    brightness : ndarray of float64, shape (sun, channel)
+        Mean of the diffuse radiance in voxels.
     order : int
         Highest degree of the harmonics.
     fraction : float
@@ -49,6 +54,7 @@ class LayerLight(NamedTuple):
     base: float
     sun_mu: Array
     irradiance: Array
+    brightness: Array
     order: int
     fraction: float
     scatter: Array
@@ -83,6 +89,45 @@ def sun_share(light, mu_s):
         return 0.0
     share = (mu_s - light.sun_mu[i]) / (light.sun_mu[i + 1] - light.sun_mu[i])
     return i + min(max(share, 0.0), 1.0 - 1e-9)
+
+
+@inlined_kernel
+def fill_blend(light, place, blend):
+    """Write the shares of both suns in light between them, (4, channel).
+
+    Light grows by several times from one sun to the next where they are low, and its logarithm
+    evenly. Shares add up to a light whose brightness is the geometric mean of both.
+
+    Parameters
+    ----------
+    light : LayerLight
+        The layer.
+    place : float
+        Of `sun_share`.
+    blend : ndarray of float64, shape (4, channel)
+        Receives the shares of the diffuse light of the lower and of the higher sun, and of their
+        irradiances.
+    """
+    first = int(place)
+    share = place - first
+    middle = light.irradiance.shape[1] // 2
+    for c in range(blend.shape[1]):
+        if share == 0.0:
+            blend[0, c], blend[1, c], blend[2, c], blend[3, c] = 1.0, 0.0, 1.0, 0.0
+            continue
+        low, high = light.brightness[first, c], light.brightness[first + 1, c]
+        blend[0, c], blend[1, c] = _shares(low, high, share)
+        low, high = light.irradiance[first, middle, c], light.irradiance[first + 1, middle, c]
+        blend[2, c], blend[3, c] = _shares(low, high, share)
+
+
+@inlined_kernel
+def _shares(low, high, share):
+    """Return shares of two numbers in their geometric mean, which one tends to at either end."""
+    ratio = min(max(high, FAINTEST) / max(low, FAINTEST), STEEPEST)
+    ratio = max(ratio, 1.0 / STEEPEST)
+    grown = math.exp(share * math.log(ratio))
+    return (1.0 - share) * grown, share * grown / ratio
 
 
 @inlined_kernel
@@ -127,7 +172,7 @@ def sun_depth(light, place, corner, weight):
 
 
 @inlined_kernel
-def fill_diffuse(light, place, corner, weight, toward, scratch, out):
+def fill_diffuse(light, place, blend, corner, weight, toward, scratch, out):
     """Write the diffuse light that is scattered toward the eye at a point, by channel.
 
     Parameters
@@ -136,6 +181,8 @@ def fill_diffuse(light, place, corner, weight, toward, scratch, out):
         The layer.
     place : float
         Of `sun_share`.
+    blend
+        Of `fill_blend`.
     corner, weight
         Of `fill_corners`.
     toward : ndarray of float32, shape (harmonic,)
@@ -150,16 +197,21 @@ def fill_diffuse(light, place, corner, weight, toward, scratch, out):
         scratch[q] = 0.0
     first = int(place)
     share = place - first
+    harmonics = toward.size
     for sun in range(2 if share > 0.0 else 1):
-        part = share if sun == 1 else 1.0 - share
         for n in range(8):
-            scale = np.float32(part * weight[n])
-            if scale == 0.0:
+            if weight[n] == 0.0:
                 continue
             voxel = light.moments[first + sun, corner[n, 0], corner[n, 1], corner[n, 2]]
-            for q in range(size):
-                scratch[q] += scale * _single(voxel[q])
-    harmonics = toward.size
+            if share == 0.0:
+                scale = np.float32(weight[n])
+                for q in range(size):
+                    scratch[q] += scale * _single(voxel[q])
+                continue
+            for c in range(out.size):
+                scale = np.float32(weight[n] * blend[sun, c])
+                for q in range(c * harmonics, (c + 1) * harmonics):
+                    scratch[q] += scale * _single(voxel[q])
     for c in range(out.size):
         total = np.float32(0.0)
         for p in range(harmonics):

@@ -88,6 +88,7 @@ class MarchScratch(NamedTuple):
     truncated: Array
     peak: Array
     local: Array
+    blend: Array
 
 
 def allocate_march(channels: int, order: int) -> MarchScratch:
@@ -103,6 +104,7 @@ def allocate_march(channels: int, order: int) -> MarchScratch:
         truncated=np.empty(channels),
         peak=np.empty((channels, TERMS)),
         local=np.empty((2, 3)),
+        blend=np.empty((4, channels)),
     )
 
 

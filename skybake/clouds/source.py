@@ -6,7 +6,7 @@ import math
 
 from skybake.cloud_fields.field import detailed_extinction
 from skybake.clouds.harmonics import fill_harmonics
-from skybake.clouds.light import fill_corners, fill_diffuse, sun_depth, sun_share
+from skybake.clouds.light import fill_blend, fill_corners, fill_diffuse, sun_depth, sun_share
 from skybake.clouds.particles import DEEPEST, TERMS
 from skybake.jit.kernel import inlined_kernel, kernel
 from skybake.transport.exponential import fast_exp
@@ -56,7 +56,9 @@ def prepare_ray(light, radius, altitude, direction, sun, distance, scratch):
         for q in range(TERMS):
             low, high = light.peak[i, c, q], light.peak[i + 1, c, q]
             scratch.peak[c, q] = low + u * (high - low)
-    return sun_share(light, scratch.local[1, 2])
+    place = sun_share(light, scratch.local[1, 2])
+    fill_blend(light, place, scratch.blend)
+    return place
 
 
 @inlined_kernel
@@ -82,6 +84,7 @@ def fill_source(field, light, marching, place, x, y, h, blur, detail, erosion, t
     fill_diffuse(
         light,
         place,
+        scratch.blend,
         scratch.corner,
         scratch.weight,
         scratch.toward,
@@ -98,7 +101,7 @@ def fill_source(field, light, marching, place, x, y, h, blur, detail, erosion, t
         peak = scratch.peak[c, TERMS - 1]
         for q in range(TERMS - 2, -1, -1):
             peak = peak * series + scratch.peak[c, q]
-        lit = _irradiance(light, place, fz, c) * beam
+        lit = _irradiance(light, place, scratch.blend, fz, c) * beam
         scratch.source[c] += lit * (scratch.truncated[c] + sharp * peak)
 
 
@@ -128,7 +131,7 @@ def _depth_to_sun(field, light, marching, place, x, y, h, blur, detail, erosion,
 
 
 @inlined_kernel
-def _irradiance(light, place, fz, channel):
+def _irradiance(light, place, blend, fz, channel):
     """Irradiance by the sun between levels and suns."""
     levels = light.irradiance.shape[1]
     z = min(max(fz, 0.0), levels - 1.0)
@@ -138,9 +141,9 @@ def _irradiance(light, place, fz, channel):
     share = place - first
     upper = min(k + 1, levels - 1)
     low, high = light.irradiance[first, k, channel], light.irradiance[first, upper, channel]
-    value = low + w * (high - low)
+    value = blend[2, channel] * (low + w * (high - low))
     if share > 0.0:
         low = light.irradiance[first + 1, k, channel]
         high = light.irradiance[first + 1, upper, channel]
-        value += share * (low + w * (high - low) - value)
+        value += blend[3, channel] * (low + w * (high - low))
     return value

@@ -27,6 +27,7 @@ def light_of(clouds):
         base=float(clouds.base),
         sun_mu=np.array([0.5]),
         irradiance=np.ones((1, 1, 1)),
+        brightness=np.ones((1, 1)),
         order=0,
         fraction=ASIDE,
         scatter=np.ones(1),

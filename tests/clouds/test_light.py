@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from skybake.clouds.light import LayerLight, fill_corners, sun_depth, sun_share
+from skybake.clouds.light import LayerLight, fill_blend, fill_corners, sun_depth, sun_share
 from skybake.clouds.particles import TERMS
 
 
@@ -18,6 +18,7 @@ def light_with(beam):
         base=0.0,
         sun_mu=np.array([0.5]),
         irradiance=np.ones((1, 1, 1)),
+        brightness=np.ones((1, 1)),
         order=0,
         fraction=0.0,
         scatter=np.ones(1),
@@ -41,3 +42,27 @@ def test_the_edge_of_a_shadow_lets_through_the_mean_of_both_sides():
 
 def test_full_shadow_has_a_finite_depth():
     assert 0.0 <= beam_at(light_with([0.0, 0.0]), 1.0) < 1e-20
+
+
+@pytest.mark.parametrize("share", [0.0, 0.25, 0.9])
+def test_brightness_between_two_suns_is_their_geometric_mean(share):
+    low, high = np.array([1e-3, 2.0]), np.array([0.4, 1.0])
+    light = light_with([1.0, 1.0])._replace(
+        brightness=np.array([low, high]), irradiance=np.array([low, high])[:, None]
+    )
+    blend = np.empty((4, 2))
+    fill_blend(light, share, blend)
+    expected = low ** (1.0 - share) * high**share
+    np.testing.assert_allclose(blend[0] * low + blend[1] * high, expected, rtol=1e-12)
+    np.testing.assert_allclose(blend[2] * low + blend[3] * high, expected, rtol=1e-12)
+
+
+def test_light_between_a_dark_and_a_bright_sun_is_finite():
+    light = light_with([1.0, 1.0])._replace(
+        brightness=np.array([[0.0], [1.0]]), irradiance=np.array([[[0.0]], [[1.0]]])
+    )
+    blend = np.empty((4, 1))
+    for share in (0.0, 1e-9, 0.5, 1.0 - 1e-9):
+        fill_blend(light, share, blend)
+        assert np.all((blend >= 0.0) & (blend <= 1e5))
+        assert 0.0 <= blend[1, 0] <= 1.0
