@@ -21,22 +21,20 @@ PARTS_BETWEEN = 8
 def fill_curved_beam(
     extinction, spacing, radius, x, y, z, ray, met, mean, leaving
 ):  # fmt: skip
-    """Write the mean of a low sun's beam in each voxel, and what leaves; return its mean beneath.
+    """Write the mean of a low sun's beam in each voxel, and what leaves at either face.
 
     Parameters
     ----------
-    extinction, spacing, x, y, ray, met, mean, leaving
+    extinction, spacing, x, y, ray, met, mean
         As of `skybake.clouds.beam.fill_beam`.
     radius : float
         Of the sphere on which the layer lies. [km]
     z : float
         Of the unit vector toward the sun, at every place of the layer.
-
-    Returns
-    -------
-    float
-        Mean over the tile of what reaches the air beneath the layer: of a sun below the horizontal
-        that has crossed the layer far away, where it stands as high above the horizontal.
+    leaving : ndarray of float32, shape (2, y, x)
+        Receives what reaches the air beneath the layer, and that above it. The light of a sun below
+        the horizontal comes beneath where it has crossed the layer far away, and stands as high
+        above the horizontal; that of a sun above it comes whole to what is above.
 
     Notes
     -----
@@ -73,18 +71,15 @@ def fill_curved_beam(
             )  # fmt: skip
     _fill(ray, 0.0)
     _follow(extinction, spacing, radius, x, y, abs(z), 0.0, 0, 0.0, ray, met)
-    beneath = 0.0
     for j in range(rows):
         for i in range(columns):
-            leaving[j, i] = math.exp(-ray[j, i])
-            beneath += leaving[j, i]
+            leaving[0, j, i] = math.exp(-ray[j, i])
+    _fill(ray, 0.0)
     if z < 0.0:
-        _fill(ray, 0.0)
         _follow(extinction, spacing, radius, x, y, z, levels * thickness, levels - 1, 0.0, ray, met)
-        for j in range(rows):
-            for i in range(columns):
-                leaving[j, i] = math.exp(-ray[j, i])
-    return beneath / (rows * columns)
+    for j in range(rows):
+        for i in range(columns):
+            leaving[1, j, i] = math.exp(-ray[j, i])
 
 
 @kernel

@@ -87,8 +87,9 @@ class SolvedLayer:
     ----------
     light : LayerLight
         For the eye's rays.
-    leaving : ndarray of float32, shape (sun, y, x)
-        Share of the sun's beam that leaves the layer, without forward peaks.
+    leaving : ndarray of float32, shape (sun, 2, y, x)
+        Share of the sun's beam that reaches what is beneath and what is above, without forward
+        peaks.
     mean_radiance : ndarray of float64, shape (sun, z, channel)
         Of the diffuse light, over all directions and the tile, times 4 pi.
     down : ndarray of float64, shape (sun, channel)
@@ -163,7 +164,7 @@ def solve_layer(
     harmonics, channels = (particles.order + 1) ** 2, weights.shape[1]
     beam = np.empty((len(suns), *grid.extinction.shape), np.float32)
     moments = np.empty((*beam.shape, channels * harmonics), np.uint16)
-    leaving = np.empty((len(suns), *grid.extinction.shape[1:]), np.float32)
+    leaving = np.empty((len(suns), 2, *grid.extinction.shape[1:]), np.float32)
     irradiance = np.empty((len(suns), grid.extinction.shape[0], channels))
     mean = np.empty_like(irradiance)
     down, down_clear = np.empty((len(suns), channels)), np.empty((len(suns), channels))
@@ -208,26 +209,26 @@ def directions_of(particles: Particles, sun: Array) -> tuple[Quadrature, float]:
 
 
 def shine(grid: Grid, radius: float, fraction: float, sun: Array) -> tuple[Voxels, Floats]:
-    """Send the sun's beam through a layer; return its voxels and what leaves, shape (y, x).
+    """Send the sun's beam through a layer; return its voxels and what leaves, shape (2, y, x).
 
     Without a sun nothing is in its shadow.
     """
     extinction = grid.extinction * np.float32(1.0 - fraction)
     if not sun.any():
         beam = np.ones_like(extinction)
-        return Voxels(extinction, grid.spacing, beam, 1.0), beam[0]
+        return Voxels(extinction, grid.spacing, beam, 1.0), np.ones(
+            (2, *beam.shape[1:]), beam.dtype
+        )
     mean = np.empty_like(extinction)
-    leaving = np.empty(extinction.shape[1:], np.float32)
-    ray, met = np.empty_like(leaving), np.empty_like(leaving)
+    leaving = np.ones((2, *extinction.shape[1:]), np.float32)
+    ray, met = np.empty_like(leaving)
     toward = [float(each) for each in sun]
-    received = ray, met, mean, leaving
     if toward[2] > FLAT:
-        fill_beam(extinction, grid.spacing, *toward, *received)
-        beneath = float(leaving.mean())
+        fill_beam(extinction, grid.spacing, *toward, ray, met, mean, leaving[0])
     else:
         around = radius + grid.base
-        beneath = fill_curved_beam(extinction, grid.spacing, around, *toward, *received)
-    return Voxels(extinction, grid.spacing, mean, beneath), leaving
+        fill_curved_beam(extinction, grid.spacing, around, *toward, ray, met, mean, leaving)
+    return Voxels(extinction, grid.spacing, mean, float(leaving[0].mean())), leaving
 
 
 def fill_moments(diffuse: Diffuse, out: npt.NDArray[np.uint16]) -> None:

@@ -22,7 +22,7 @@ def dim_visibility(
     ----------
     field, light : CloudField, LayerLight
         The layer.
-    leaving : ndarray of float32, shape (sun, y, x)
+    leaving : ndarray of float32, shape (sun, 2, y, x)
         Of `SolvedLayer`.
     radius, altitude : float
         Of the ground, and of the observer above it. [km]
@@ -79,9 +79,10 @@ def _visible(field, light, leaving, radius, altitude, direction, distance, sun):
     share = place - which
     px, py, above = px + to_face * sun[0], py + to_face * sun[1], above + to_face * sun[2]
     x, y = tile_place(field, radius, px, py, above - radius)
-    value = _between(leaving[which], light, x, y)
+    side = 0 if h < base else 1
+    value = _between(leaving[which, side], light, x, y)
     if share > 0.0:
-        value += share * (_between(leaving[which + 1], light, x, y) - value)
+        value += share * (_between(leaving[which + 1, side], light, x, y) - value)
     return value
 
 

@@ -52,7 +52,7 @@ def solve_layers(
         given = layer.grid, particle, air, weights, suns, own
         solved = solve_layer(*given, around, reflects[k], workers)
         at = nearest_sun(solved, sun)
-        sun_share = sun_share * float(solved.leaving[at].mean())
+        sun_share = sun_share * float(solved.leaving[at, 0].mean())
         sky_ratio = solved.down[at] / np.maximum(solved.down_clear[at], 1e-300)
         out.append(solved)
     return out

@@ -123,7 +123,7 @@ def check_fluxes(folder, rows):
         at = int(np.argmin(np.abs(solved.light.sun_mu - math.sin(sun))))
         slope = solved.light.sun_mu[at]
         assert slope == pytest.approx(math.sin(sun), abs=0.02)
-        through = solved.down[at, 0] / slope + float(solved.leaving[at].mean())
+        through = solved.down[at, 0] / slope + float(solved.leaving[at, 0].mean())
         expected = row["diffuse_transmittance"] + row["direct_transmittance"]
         assert through == pytest.approx(expected, rel=0.015)
         # Of the first of all suns.
