@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -158,7 +159,7 @@ def finish_frame(
         light, moon, digests = found
         for path in frame.files():
             remove_leftovers(path)
-    return FrameOutcome(
+    outcome = FrameOutcome(
         number=frame.number,
         is_new=is_new,
         light=light,
@@ -170,6 +171,11 @@ def finish_frame(
         warnings=warnings,
         moon=moon,
     )
+    if planet.clouds:
+        # Scenes refer to themselves, and the light of their clouds takes memory that others need.
+        del work
+        gc.collect()
+    return outcome
 
 
 class _Work:
