@@ -45,7 +45,12 @@ from skybake.commands.options.observer import (
     sun_distance_option,
     sun_option,
 )
-from skybake.commands.options.previews import picture_from_options, preview_options
+from skybake.commands.options.previews import (
+    BESIDE,
+    picture_from_options,
+    preview_option,
+    preview_options,
+)
 from skybake.commands.options.rules import Needs, check_needs, options_together, some_of
 from skybake.commands.options.times import moment_from_options, moment_needs, moment_options
 from skybake.commands.options.world import world_from_options, world_options
@@ -113,14 +118,7 @@ _STORED = (
     show_default="a name that says what it is, in the current folder",
     help="Picture of the light, .exr or .hdr.",
 )
-@click.option(
-    "--preview",
-    metavar="FILE.png",
-    type=click.Path(path_type=Path),
-    callback=values.with_suffix(".png"),
-    show_default="beside the picture of the light",
-    help="Picture to look at.",
-)
+@preview_option("[FILE.png]", "Picture to look at; by default beside the picture of the light.")
 @click.option("--no-preview", is_flag=True, help="Write no picture to look at.")
 @options_together(*some_of(preview_options, "preview_ev", "vision", "white_balance", "view"))
 @click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object.")
@@ -178,7 +176,11 @@ def shot(**options: Any) -> None:
     lighting = replace(settings.lighting, sun_distance=distance, moon=moon)
     settings = scaled_for_night(options, replace(settings, lighting=lighting))
     output = options["output"] or default_path(planet, settings)
-    preview = None if options["no_preview"] else options["preview"] or preview_beside(output)
+    preview = options["preview"] or BESIDE
+    if options["no_preview"]:
+        preview = None
+    elif preview == BESIDE:
+        preview = preview_beside(output)
     quiet = options["quiet"]
     if not quiet:
         announce(output)

@@ -22,7 +22,7 @@ def shot(*arguments):
 
 @pytest.mark.usefixtures("warm")
 def test_a_shot_is_the_perspective_map_of_the_same_view_and_a_picture_of_it(folder):
-    shot("--sun", "20deg", "--look", "170,5", "-o", "a.exr")
+    shot("--sun", "20deg", "--look", "170,5", "--preview", "-o", "a.exr")
     view = ("--projection", "perspective", "--size", "64x36", "--look", "170,5")
     assert (
         invoke("render", "--sun", "20deg", *view, "-q", "--preview", "-o", "b.exr").exit_code == 0

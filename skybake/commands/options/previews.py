@@ -20,7 +20,8 @@ BESIDE = Path("beside-the-map.png")
 _SEQUENCE_PICTURES = ("preview", "contact_sheet", "animate")
 
 
-def _preview_option(metavar: str, text: str) -> Decorator:
+def preview_option(metavar: str, text: str) -> Decorator:
+    """Name a file of its own, or, without one, the file beside the map."""
     return click.option(
         "--preview",
         is_flag=False,
@@ -71,7 +72,7 @@ vision_option = _vision_option("--vision")
 preview_vision_option = _vision_option("--preview-vision")
 
 preview_options = options_together(
-    _preview_option("[FILE.png]", "Also write a picture to look at; by default beside the map."),
+    preview_option("[FILE.png]", "Also write a picture to look at; by default beside the map."),
     click.option(
         "--preview-ev",
         metavar="auto|N",
@@ -90,7 +91,7 @@ preview_options = options_together(
 )
 
 sequence_preview_options = options_together(
-    _preview_option("[PATTERN.png]", "Also write pictures to look at; by default beside the maps."),
+    preview_option("[PATTERN.png]", "Also write pictures to look at; by default beside the maps."),
     click.option(
         "--preview-ev",
         metavar="auto|adapt|N",
