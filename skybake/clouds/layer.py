@@ -214,13 +214,10 @@ def shine(grid: Grid, radius: float, fraction: float, sun: Array) -> tuple[Voxel
     Without a sun nothing is in its shadow.
     """
     extinction = grid.extinction * np.float32(1.0 - fraction)
-    if not sun.any():
-        beam = np.ones_like(extinction)
-        return Voxels(extinction, grid.spacing, beam, 1.0), np.ones(
-            (2, *beam.shape[1:]), beam.dtype
-        )
-    mean = np.empty_like(extinction)
     leaving = np.ones((2, *extinction.shape[1:]), np.float32)
+    if not sun.any():
+        return Voxels(extinction, grid.spacing, np.ones_like(extinction), 1.0), leaving
+    mean = np.empty_like(extinction)
     ray, met = np.empty_like(leaving)
     toward = [float(each) for each in sun]
     if toward[2] > FLAT:

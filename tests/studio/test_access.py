@@ -5,8 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.studio.browser import Tab, chromium, needs_browser
-from tests.studio.servers import serving
+from tests.studio.browser import Tab, needs_browser
 
 pytestmark = needs_browser
 
@@ -30,18 +29,6 @@ FAULTS = """async () => {
   return violations.flatMap(({ id, nodes }) =>
     nodes.map(({ target, failureSummary }) => [id, target.join(" "), failureSummary].join(": ")));
 }"""
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with chromium() as one:
-        yield one
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    with serving(tmp_path_factory.mktemp("studio")) as one:
-        yield one
 
 
 @pytest.fixture(scope="module")

@@ -8,15 +8,8 @@ import pytest
 
 from skybake.studio.guard import LARGEST_BODY
 from skybake.studio.server import PAGE
-from tests.studio.servers import serving
 
 API = ("/", "/api/options", "/api/world", "/api/live", "/api/parse?option=sun&text=5deg")
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    with serving(tmp_path_factory.mktemp("studio")) as running:
-        yield running
 
 
 @pytest.mark.parametrize("path", API)

@@ -9,24 +9,12 @@ import pytest
 from skybake.colour.exposure import luminance_from_units
 from tests.cli.runs import invoke
 from tests.peers.files import read_pixels
-from tests.studio.browser import Tab, chromium, needs_browser
+from tests.studio.browser import Tab, needs_browser
 from tests.studio.servers import HOLDING, serving
 
 pytestmark = needs_browser
 
 SMALL = "size=512x256"
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with chromium() as one:
-        yield one
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    with serving(tmp_path_factory.mktemp("studio")) as one:
-        yield one
 
 
 @pytest.fixture
